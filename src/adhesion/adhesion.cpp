@@ -346,8 +346,8 @@ PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
   PetscFunctionReturn(0);
 }
 
-double Adhesion::shortest_period() const {
-  constexpr double pi = 3.14159265358979323846, periods = 40;
+double Adhesion::largest_step() const {
+  constexpr double pi = 3.14159265358979323846;
   const Domain &domain = flow_.domain;
   std::map<double, int> bonds_of;
   for (const Bond &bond : bonds_) ++bonds_of[receptors_[bond.receptor].body];
@@ -362,7 +362,7 @@ double Adhesion::shortest_period() const {
     const double rate = std::max(pair.law.rate_on, pair.law.off_rate(0));
     if (rate > 0) shortest = std::min(shortest, 0.2 / rate);
   }
-  return periods * shortest;
+  return shortest;
 }
 
 bool Adhesion::is_on_grid(const AdhesionPair &pair) const {
@@ -377,7 +377,8 @@ const double *Adhesion::other_end(const Bond &bond) const {
 }
 
 // On the faces around a place, with the weights with which the velocity is read there, so that the power of a force is
-// what it does on the flow. What falls on walls and behind them is borne by these.
+// what it does on the flow. Of a face behind a side the velocity is that of its mirror image with a sign, and so is
+// the force. Faces on walls are theirs.
 void Adhesion::add_at(const double place[3], const Real3 &force, double factor, Field *field) const {
   const Domain &domain = flow_.domain;
   const Layout &layout = domain.layout();
@@ -387,10 +388,14 @@ void Adhesion::add_at(const double place[3], const Real3 &force, double factor, 
       int at[3] = {i, j, k};
       for (int d = 0; d < domain.dimension(); ++d) {
         const int cells = domain.domain_cells()[d];
-        if (!domain.is_wall(d))
+        if (!domain.is_wall(d)) {
           at[d] = domain.image(d, at[d]);
-        else if (at[d] < (d == a) || at[d] >= cells)
-          return;
+        } else if (d == a) {
+          if (at[d] < 1 || at[d] >= cells) return;
+        } else if (at[d] < 0 || at[d] >= cells) {
+          if (is_solid(flow_.spec.sides[d][at[d] >= cells].kind)) weight = -weight;
+          at[d] = at[d] < 0 ? -1 - at[d] : 2 * cells - 1 - at[d];
+        }
         at[d] -= layout.begin[d];
         if (at[d] < 0 || at[d] >= layout.cells[d]) return;
       }

@@ -39,8 +39,8 @@ public:
   PetscErrorCode carry(CarriedState *state) override;
   PetscErrorCode start() override;
   PetscErrorCode resume() override;
-  /// Forty times the step that bonds bear: springs that pull on the fluid, rates of formation and rupture.
-  double shortest_period() const override;
+  /// That of springs that pull on the fluid, and of rates of formation and rupture.
+  double largest_step() const override;
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;

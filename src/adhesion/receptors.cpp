@@ -8,11 +8,22 @@
 namespace eulastic {
 namespace {
 
-// phi and its gradient at a place, linear between centres.
+// phi and its gradient at a place, linear between centres. Behind walls there is nothing of the body: where it touches
+// one its surface is the wall.
 struct Level {
   double phi = 0;
   Real3 slope{};
 };
+
+// Whether a cell of a box lies outside of the domain.
+bool is_behind_side(const Box &box, const Int3 &cell) {
+  bool behind = false;
+  for (int d = 0; d < box.dimension(); ++d) {
+    const int at = box.layout().begin[d] + cell[d];
+    behind = behind || (box.is_wall(d) && (at < 0 || at >= box.domain_cells()[d]));
+  }
+  return behind;
+}
 
 Level level_at(const BodyInBox &body, const double place[3]) {
   const Box &box = *body.box;
@@ -35,7 +46,9 @@ Level level_at(const BodyInBox &body, const double place[3]) {
       weight[d] = step[d] ? part[d] : 1 - part[d];
       all *= weight[d];
     }
-    const double value = phi(first[0] + step[0], first[1] + step[1], first[2] + step[2]);
+    const double value = is_behind_side(box, {first[0] + step[0], first[1] + step[1], first[2] + step[2]})
+                             ? 0
+                             : phi(first[0] + step[0], first[1] + step[1], first[2] + step[2]);
     level.phi += all * value;
     for (int d = 0; d < dimension; ++d) {
       double across = (step[d] ? 1 : -1) / box.spacing()[d];

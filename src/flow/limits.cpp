@@ -227,7 +227,7 @@ double TimeStepLimits::automatic(const char **name) const {
     double dt;
     const char *name;
   };
-  std::vector<Bound> bounds{{advective, "advective"}, {forcing_share * forcing, "forcing period"}};
+  std::vector<Bound> bounds{{advective, "advective"}, {forcing_share * forcing, "forcing period"}, {bonds, "bonds"}};
   if (scheme.rkl)
     bounds.push_back(elastic_share * elastic > kelvin_voigt_share * kelvin_voigt
                          ? Bound{elastic_share * elastic, "elastic wave"}

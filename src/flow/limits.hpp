@@ -49,6 +49,7 @@ struct TimeStepLimits {
   double capillary_viscous;  ///< h mu/sigma, of surfaces that follow their tension as viscosity lets them
   double bending;            ///< sqrt(8 rho/(E_b k^5)), k = pi/(2 h): the shortest bending wave that is felt
   double bending_viscous;    ///< 8 mu/(E_b k^3), of membranes that follow their bending as viscosity lets them
+  double bonds = HUGE_VAL;   ///< FlowPart::largest_step() of all parts
   double forcing;            ///< the shortest period of walls, sides and body force
   /// The automatic step and the name of what sets it.
   double automatic(const char **name = nullptr) const;

@@ -74,6 +74,8 @@ public:
   virtual void give_pressures(BoxSides *) const {}
   /// Of what it moves, in time; the time step resolves it.
   virtual double shortest_period() const { return HUGE_VAL; }
+  /// The largest time step that what it adds to the flow permits.
+  virtual double largest_step() const { return HUGE_VAL; }
 
   // In the order of a step.
 

@@ -43,7 +43,10 @@ TimeStepLimits Scheme::limits(const FlowExtremes &extremes) const {
   TimeStepLimits limits =
       time_step_limits(flow_.domain, flow_.driven_fluid(), contrast(extremes.trace), flow_.spec.sides, extremes,
                        {flow_.staggered(), flow_.spec.viscous == ViscousScheme::rkl});
-  for (const FlowPart *part : flow_.parts) limits.forcing = std::min(limits.forcing, part->shortest_period());
+  for (const FlowPart *part : flow_.parts) {
+    limits.forcing = std::min(limits.forcing, part->shortest_period());
+    limits.bonds = std::min(limits.bonds, part->largest_step());
+  }
   return limits;
 }
 

@@ -91,7 +91,7 @@ class Adhesion(SceneCase):
             self.assertEqual({row["body"] for row in last}, {2, 3})  # the third cell is beside the region
             for row in last:
                 self.assertAlmostEqual(math.hypot(row["to_y"] - 6, row["to_z"] - 6), 4.5, delta=.25)  # half a cell
-        refused = [word if word != ".8" else "1.1" for word in map(str, [*words, "-vessel_law", "rigid"])]
+        refused = [word if word != "0.8" else "1.1" for word in map(str, [*words, "-vessel_law", "rigid"])]
         done = subprocess.run([BINARY, *refused], cwd=self.room, capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("-adhesion_cell_vessel_reach: 1.1 is more than 2 cells", done.stderr)
