@@ -46,7 +46,7 @@ class Framed:
         if not self.look.words:
             return -0.98, 0.98, -0.98, 0.98
         left = -0.72 if self.stress > 0 else -0.96
-        return left, 0.74 if self.look.behind or self.look.field else 0.96, -0.9, 0.86
+        return left, 0.74 if self.look.behind or self.look.field or self.tension else 0.96, -0.9, 0.86
 
     def eye(self, aspect):
         """Where the box just fills the frame; aspect: width over height, None if the height shall follow."""
@@ -92,13 +92,14 @@ class Framed:
         if self.stress > 0:
             largest = self.stress * units.factor("pressure")
             self.add_bar(renderer, self.table(0, largest, GREENS), units.label("wall shear\nstress", "pressure").replace(" (", "\n("), 0.03, 0.25)
-        both = look.behind and look.field
-        for name, ends, low in ((look.behind, self.speed, 0.52 if both else 0.25), (look.field, self.body_range, 0.06 if both else 0.25)):
-            if name:
-                quantity = derived.quantity(name)
-                title = units.label(name.replace("_", " ") + " ", quantity).replace(" (", "\n(", 1)
-                table = self.table(*(end * units.factor(quantity) for end in ends))
-                self.add_bar(renderer, table, title.strip(), 0.885, low, 0.38 if both else 0.5)
+        scales = [(name.replace("_", " "), derived.quantity(name), ends)
+                  for name, ends in ((look.field, self.body_range), (look.behind, self.speed)) if name]
+        if self.tension:
+            scales.insert(0, ("tension of bonds", "force", self.tension))
+        low, step, tall = ((0.25, 0, 0.5), (0.06, 0.46, 0.38), (0.04, 0.32, 0.25))[max(0, len(scales) - 1)]
+        for n, (name, quantity, ends) in enumerate(scales):
+            table = self.table(*(end * units.factor(quantity) for end in ends))
+            self.add_bar(renderer, table, units.label(name + " ", quantity).replace(" (", "\n(", 1).strip(), 0.885, low + n * step, tall)
         self.add_scale(renderer, snapshot)
 
     def add_scale(self, renderer, snapshot):

@@ -49,16 +49,18 @@ class Units:
         if [name.replace("u", "µ") for name in (length, time, mass)] == ["µm", "µs", "pg"]:
             depth = "" if d == 3 else f"/{length}"
             self.names.update({"velocity": f"{length}/{time.replace('µ', 'm').replace('u', 'm')}", "pressure": "Pa",
-                               "viscosity": "mPa s", "energy": "fJ" + depth, "power": "nW" + depth})
-            self.factors = {"velocity": 1e3, "pressure": 1e3}
+                               "viscosity": "mPa s", "energy": "fJ" + depth, "power": "nW" + depth,
+                               "force": "pN" + depth})
+            self.factors = {"velocity": 1e3, "pressure": 1e3, "force": 1e3}
         elif mass:
             force = f"{mass} {length}" if d == 3 else mass
             self.names.update({"pressure": f"{mass}/({length} {time}²)", "viscosity": f"{mass}/({length} {time})",
                                "energy": f"{force}{'²' if d == 3 else f' {length}'}/{time}²",
-                               "power": f"{force}{'²' if d == 3 else f' {length}'}/{time}³"})
+                               "power": f"{force}{'²' if d == 3 else f' {length}'}/{time}³", "force": f"{force}/{time}²"})
         else:
             self.names.update({"pressure": f"ρ {length}²/{time}²", "viscosity": f"ρ {length}²/{time}",
-                               "energy": f"ρ {length}{power[d + 2]}/{time}²", "power": f"ρ {length}{power[d + 2]}/{time}³"})
+                               "energy": f"ρ {length}{power[d + 2]}/{time}²", "power": f"ρ {length}{power[d + 2]}/{time}³",
+                               "force": f"ρ {length}{power[d + 1]}/{time}²"})
 
     def factor(self, quantity):
         """What values of the run are multiplied by for labels of this quantity."""

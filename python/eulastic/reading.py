@@ -1,4 +1,5 @@
 """The output directory of a run (docs/outputs.md)."""
+import functools
 import json
 import pathlib
 import types
@@ -80,6 +81,13 @@ class Snapshot:
             return self["solid_fraction"]
         return sum(self.fraction_of(name) for name in moving)
 
+    def bonds(self):
+        """Rows of adhesion_bonds.csv at the time of this snapshot, as `Run.adhesion_bonds`; none without adhesion."""
+        rows = self.run.adhesion_bonds
+        if rows is None or not len(rows):
+            return rows
+        return rows[abs(rows.time - self.time) <= 1e-12 * max(1, abs(self.time))]
+
 
 def is_finished(directory):
     """Whether a run came to its end: until then summary.json is of its last checkpoint, and says so."""
@@ -97,6 +105,7 @@ class Run:
     bodies     arrays of bodies.h5: time (nt), id, species (nb), centroid (nt, nb, 3), ...
     probes     probes.csv likewise; profile["x"], ["y"], ["z"] profile_x.csv, ..., if they exist
     snapshots  list of Snapshot in the order of time
+    adhesion, adhesion_bonds, adhesion_events  adhesion.csv, ... likewise as series, read at first use; None without adhesion
     """
 
     def __init__(self, directory):
@@ -116,6 +125,18 @@ class Run:
     def _if_there(self, name, read, otherwise):
         path = self.directory / name
         return read(path) if path.exists() else otherwise
+
+    @functools.cached_property
+    def adhesion(self):
+        return self._if_there("adhesion.csv", read_series, None)
+
+    @functools.cached_property
+    def adhesion_bonds(self):
+        return self._if_there("adhesion_bonds.csv", read_series, None)
+
+    @functools.cached_property
+    def adhesion_events(self):
+        return self._if_there("adhesion_events.csv", read_series, None)
 
     @property
     def species(self):

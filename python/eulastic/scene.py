@@ -8,7 +8,7 @@ import numpy
 
 from . import derived
 from .contours import Contours
-from .framing import Framed
+from .framing import INK, Framed
 from .reading import VESSELS
 from .rounding import round_up
 
@@ -91,11 +91,20 @@ def field_range(snapshots, name):
     return derived.limits(name, values, derived.least(snapshots[-1], name))
 
 
+def tension_range(snapshots):
+    """Of the bonds in all frames, 0 in the middle, its quarters short numbers; None without any bond."""
+    tensions = [rows.tension for rows in (snapshot.bonds() for snapshot in snapshots) if rows is not None and len(rows)]
+    if not tensions:
+        return None
+    half = 2 * round_up(abs(numpy.concatenate(tensions)).max() / 2 or 1.0)
+    return -half, half
+
+
 class Scene(Framed):
-    def __init__(self, run, size, units, speed, stress, look=Look(), body_range=(0, 1)):
+    def __init__(self, run, size, units, speed, stress, look=Look(), body_range=(0, 1), tension=None):
         self.contours = Contours(run)
         self.vtk, self.run, self.units, self.speed, self.stress = self.contours.vtk, run, units, speed, stress
-        self.look, self.body_range = look, body_range
+        self.look, self.body_range, self.tension = look, body_range, tension
         vtk = self.vtk
         self.window = vtk.vtkRenderWindow()  # opens the display
         self.window.SetOffScreenRendering(1)
@@ -112,6 +121,8 @@ class Scene(Framed):
         self.window.GetRenderers().RemoveAllItems()
         self.window.AddRenderer(renderer)
         self.add_bodies(renderer, snapshot)
+        if self.tension:
+            self.add_bonds(renderer, snapshot)
         self.add_box(renderer, snapshot)
         if self.look.behind:
             self.add_slice(renderer, snapshot)
@@ -175,6 +186,30 @@ class Scene(Framed):
         mapper = self.actor(renderer, surface, (1, 1, 1), Ambient=0.25, **look).GetMapper()
         mapper.ScalarVisibilityOn()
         mapper.SetLookupTable(self.table(0, self.stress, GREENS))
+
+    def add_bonds(self, renderer, snapshot):
+        """Lines from end to end, coloured by their tension. One that begins outside of the box is moved by its periods."""
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        vtk, bonds = self.vtk, snapshot.bonds()
+        periodic = [not self.run.is_bounded(d) for d in range(3)]
+        points, lines = vtk.vtkPoints(), vtk.vtkCellArray()
+        for bond in bonds:
+            ends = numpy.array([[bond[f"{end}_{d}"] for d in "xyz"] for end in ("from", "to")])
+            ends -= numpy.where(periodic, numpy.floor(ends[0] / self.run.length) * self.run.length, 0)
+            lines.InsertNextCell(2)
+            for end in ends:
+                lines.InsertCellPoint(points.InsertNextPoint(*end))
+        data = vtk.vtkPolyData()
+        data.SetPoints(points)
+        data.SetLines(lines)
+        data.GetCellData().SetScalars(numpy_to_vtk(numpy.array(bonds.tension, float), deep=1))
+        tubes = vtk.vtkTubeFilter()
+        tubes.SetInputData(data)
+        tubes.SetRadius(0.2 * self.run.spacing.min())
+        tubes.SetNumberOfSides(8)
+        mapper = self.actor(renderer, tubes, INK, Ambient=0.3).GetMapper()
+        mapper.ScalarVisibilityOn()
+        mapper.SetLookupTable(self.table(*self.tension))
 
     def with_normals(self, surface):
         normals = self.vtk.vtkPolyDataNormals()

@@ -60,6 +60,26 @@ Level level_at(const BodyInBox &body, const double place[3]) {
   return level;
 }
 
+// The gradient of phi at the centre of the cell of a place, by differences over two cells: it sees the surface from a cell
+// farther away than `level_at`.
+Real3 wide_slope(const BodyInBox &body, const double place[3]) {
+  const Box &box = *body.box;
+  const Layout &layout = box.layout();
+  const ConstView phi = std::as_const(body.phase->fraction)[0];
+  int cell[3]{};
+  for (int d = 0; d < box.dimension(); ++d)
+    cell[d] = std::clamp(static_cast<int>(std::floor(place[d] / box.spacing()[d])) - layout.begin[d],
+                         1 - layout.ghosts[d], layout.cells[d] + layout.ghosts[d] - 2);
+  Real3 slope{};
+  for (int d = 0; d < box.dimension(); ++d) {
+    int low[3]{cell[0], cell[1], cell[2]}, high[3]{cell[0], cell[1], cell[2]};
+    --low[d];
+    ++high[d];
+    slope[d] = (phi(high[0], high[1], high[2]) - phi(low[0], low[1], low[2])) / (2 * box.spacing()[d]);
+  }
+  return slope;
+}
+
 double density_of(const AdhesionSpec &spec, int species) {
   double density = 0;
   for (const AdhesionPair &pair : spec.pairs)
@@ -109,14 +129,12 @@ void place_on(const AdhesionSpec &spec, const BodyInBox &body, std::vector<Recep
 }  // namespace
 
 Real3 way_to_surface(const BodyInBox &body, const double place[3]) {
-  const Level level = level_at(body, place);
+  Level level = level_at(body, place);
   const Real3 &h = body.box->spacing();
-  double squares = 0, shortest = h[0];
-  for (int d = 0; d < body.box->dimension(); ++d) {
-    squares += level.slope[d] * level.slope[d];
-    shortest = std::min(shortest, h[d]);
-  }
-  const double steepness = std::sqrt(squares);
+  const double shortest = *std::min_element(h.begin(), h.begin() + body.box->dimension());
+  const auto size_of = [](const Real3 &v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
+  if (!(size_of(level.slope) * shortest > 1e-3)) level.slope = wide_slope(body, place);
+  const double steepness = size_of(level.slope);
   if (!(steepness * shortest > 1e-3)) return {};
   const double most = 0.25 * shortest, far = std::clamp((0.5 - level.phi) / steepness, -most, most);
   Real3 way{};

@@ -128,7 +128,7 @@ PetscErrorCode Outputs::write_due(bool last) {
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
   if (Adhesion *adhesion = solver_->part<Adhesion>()) {
-    if (series) PetscCall(bond_files_.write_bodies(state.time, adhesion));
+    if (probes) PetscCall(bond_files_.write_bodies(state.time, adhesion));
     if (snapshot) PetscCall(bond_files_.write_bonds(state.time, *adhesion));
   }
   if (samples)

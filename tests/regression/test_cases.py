@@ -23,10 +23,10 @@ from program import BINARY, launcher  # noqa: E402
 ALL_CASES = sorted(path.stem for path in (ROOT / "options").glob("*.opts"))
 HUGE = ["capillary_paper"]  # coarse, they would not be themselves any more: only checked
 CASES = [case for case in ALL_CASES if case not in HUGE]
-# Membranes, drops, and rigid bodies that travel or turn in the grid: the paper's method has none of them.
+# Membranes, drops, adhesion, and rigid bodies that travel or turn in the grid: the paper's method has none of them.
 FAST_ALONE = ["bending_ring", "capillary_red_cells_h20", "capsule_in_shear", "channel_red_cells", "drop_in_shear",
               "oscillating_cylinder", "red_cell_in_shear", "red_cell_in_tube", "red_cell_in_tweezers", "stirrer",
-              "tumbling_capsule"]
+              "thrombus_patch", "tumbling_capsule"]
 STEPS = 3
 
 
@@ -35,8 +35,12 @@ def environment(options=""):
 
 
 def coarse(case):
-    """The case's cells, at most 16 (3-D) or 32 (2-D) in a direction; half of them where narrow vessels need more."""
-    cells = [int(n) for n in read_options(ROOT / f"options/{case}.opts")["grid_cells"].split(",")]
+    """The case's cells, at most 16 (3-D) or 32 (2-D) in a direction; half of them where narrow vessels need more, all of them
+    where bonds must reach a cell."""
+    options = read_options(ROOT / f"options/{case}.opts")
+    cells = [int(n) for n in options["grid_cells"].split(",")]
+    if "adhesion" in options:
+        return options["grid_cells"]
     if case.startswith(("capillary", "bifurcation")):
         return ",".join(str(n // 2) for n in cells)
     most = 32 if cells[2] == 1 else 16

@@ -1,0 +1,67 @@
+"""The study of adhesion in its short form, what Python reads of the bonds of its runs, and bonds in pictures. Needs EULASTIC."""
+import pathlib
+import re
+import shutil
+import sys
+import unittest
+
+import matplotlib.image
+import numpy
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from full import full  # noqa: E402
+from test_scripts import SCRIPTS, WithFolder, load, start  # noqa: E402
+from eulastic import Run  # noqa: E402
+
+
+class AdhesionStudy(WithFolder):
+    def test_exact_drag(self):
+        """Between the values of the table, at one of them, and far from the wall, where F* tends to 1 + 9/16 a/h."""
+        study = load("studies/adhesion/adhesion_study")
+        force, torque = study.exact(1.5431)
+        self.assertAlmostEqual(force, 6 * numpy.pi * 1.5431 * study.SHEAR * 1.4391)
+        self.assertAlmostEqual(torque, 4 * numpy.pi * study.SHEAR * 0.97419)
+        for height, value in zip(study.H_OVER_A[-2:], study.FORCE[-2:]):
+            self.assertLess(abs(value / (1 + 9 / 16 / height) - 1), 0.04)
+        moving = study.exact(2.3524, 0.1)[0]
+        self.assertAlmostEqual(study.exact(2.3524)[0] - moving, 6 * numpy.pi * 0.1 * 1.3079)
+
+    @full
+    def test_short_runs(self):
+        made = start(SCRIPTS / "studies/adhesion/adhesion_study", "--quick", "--keep", self.folder).stdout
+        tether = re.search(r"^\| 4 \| (\d+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|", made, re.MULTILINE)
+        self.assertGreater(int(tether[1]), 50)
+        self.assertTrue(0.2 < float(tether[4]) < 1.2, made)  # still under way to the drag at rest
+        rows = re.findall(r"^\| (2500|40000) \| 6 of 6 \| \d \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|", made, re.MULTILINE)
+        self.assertEqual([row[0] for row in rows], ["2500", "40000"], made)
+        self.assertGreater(float(rows[1][1]), 5 * float(rows[0][1]))
+        self.assertGreater(float(rows[1][3]), float(rows[0][3]))
+        for name in ("tether", "detachment", "arrest"):
+            self.assertTrue((self.folder / f"adhesion_{name}.png").exists(), name)
+        self.check_bonds(self.folder / "tether_4")
+
+    def check_bonds(self, directory):
+        """The rows of all three tables agree with each other; without the bonds the picture is another one."""
+        run = Run(directory)
+        pull, _ = load("studies/adhesion/adhesion_study").pull(run)
+        last = run.adhesion[-1]
+        self.assertEqual(len(run.snapshots[-1].bonds()), last.bonds)
+        numpy.testing.assert_allclose(pull, [last.force_x, last.force_y, last.force_z], rtol=1e-9, atol=1e-9)
+        formed, broken = ((run.adhesion_events.formed == value).sum() for value in (1, 0))
+        self.assertEqual((formed - broken, broken), (last.bonds, 0))
+        self.assertEqual(len(set(zip(run.adhesion.time, run.adhesion.body))), len(run.adhesion))
+        self.assertEqual(len(run.snapshots[0].bonds()), 0)
+        copy = self.folder / "without"
+        shutil.copytree(directory, copy)
+        (copy / "adhesion_bonds.csv").unlink()
+        self.assertIsNone(Run(copy).snapshots[-1].bonds())
+        pictures = []
+        for folder in (directory, copy):
+            start(SCRIPTS / "render", folder, "--size", 400, 300, "--plain")
+            pictures.append(matplotlib.image.imread(folder / "bodies.png")[..., :3])
+        self.assertGreater((abs(pictures[0] - pictures[1]).max(axis=-1) > 0.1).sum(), 20)
+
+
+if __name__ == "__main__":
+    unittest.main()
