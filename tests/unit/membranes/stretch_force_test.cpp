@@ -41,8 +41,8 @@ struct Pulled : InterfaceScene {
   // What they add to a rate.
   Field rate(double scale) {
     Field rate(domain, dim);
-    const MomentumStep step{};
-    EXPECT_EQ(forces->add_rate({step, scale, rate, nullptr, {}, 0}), 0);
+    const MomentumStep any_step{};
+    EXPECT_EQ(forces->add_rate({any_step, scale, rate, nullptr, {}, 0}), 0);
     return rate;
   }
   /// From the centre, of a face or a cell.
