@@ -60,8 +60,8 @@ Level level_at(const BodyInBox &body, const double place[3]) {
   return level;
 }
 
-// The gradient of phi at the centre of the cell of a place, by differences over two cells: it sees the surface from a cell
-// farther away than `level_at`.
+// The gradient of phi at the centre of the cell of a place, by differences over two cells: it sees the surface from a
+// cell farther away than `level_at`.
 Real3 wide_slope(const BodyInBox &body, const double place[3]) {
   const Box &box = *body.box;
   const Layout &layout = box.layout();
