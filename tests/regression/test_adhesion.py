@@ -116,8 +116,12 @@ class Adhesion(SceneCase):
                                    "some": (self.scene(at, *common, *pair("cell_wall", **rates | {"rate_off": .2})), {"ranks": 1})})
         self.assertEqual(len(found), 2)
         most = rows_of(self.room / "all" / FILES[0])[-1]["bonds"]
-        # The cap of a sphere that is no more than 1.5 away from the wall: 2 pi a h with h = 1.5 - .6.
-        self.assertAlmostEqual(most, 200 * 2 * math.pi * 1.4 * .9, delta=.06 * 200 * 2 * math.pi * 1.4 * .9)
+        # The cap of a sphere that is no more than 1.5 away from the wall, 2 pi a (1.5 - (2 - a)). Solid fractions are means over cells,
+        # linear between centres: of variance h^2/12 + h^2/6, so that phi = 1/2 lies h^2/(4 a) inside of a sphere of radius a. Cells
+        # round the number of their receptors at random.
+        radius = 1.4 - .5**2 / (4 * 1.4)
+        cap = 200 * 2 * math.pi * radius * (radius - .5)
+        self.assertAlmostEqual(most, cap, delta=3 * math.sqrt(cap))
         numbers = [row["bonds"] for row in rows_of(self.room / "some" / FILES[0]) if row["time"] > 60]
         on, off = -math.expm1(-.1), -math.expm1(-.2)
         share = on / (on + off)
