@@ -55,7 +55,6 @@ PetscErrorCode Adhesion::carry(CarriedState *state) {
       numbers.push_back(number);
     for (int d = 0; d < 3; ++d) numbers.insert(numbers.end(), {&receptor.place[d], &receptor.anchor[d]});
   }
-  state->reals["bonds_formed_and_broken"] = {&formed_, &broken_};
   PetscFunctionReturn(0);
 }
 
@@ -185,7 +184,6 @@ void Adhesion::release(Receptor *receptor, double tension) {
                      static_cast<int>(receptor->pair), tension, flow_.now.time - receptor->since});
   if (other >= 0) receptors_[other].partner = Receptor::none;
   receptor->partner = Receptor::none;
-  broken_ += 1;
 }
 
 void Adhesion::break_bonds(double dt) {
@@ -325,7 +323,6 @@ void Adhesion::form_bonds_of_bodies(double dt, const std::vector<char> &free) {
 
 void Adhesion::note_formed(std::size_t r) {
   const Receptor &receptor = receptors_[r];
-  formed_ += 1;
   events_.push_back({flow_.now.time, true, static_cast<int>(receptor.body),
                      number_of(receptors_, static_cast<std::ptrdiff_t>(receptor.partner)),
                      static_cast<int>(receptor.pair), 0, 0});

@@ -8,7 +8,7 @@
 #include "parts/flow.hpp"
 #include "parts/flow_part.hpp"
 
-#include <string>
+#include <utility>
 #include <vector>
 
 namespace eulastic {
@@ -47,8 +47,6 @@ public:
   void mark_forced_rows(std::vector<char> *rows) const override;
   PetscErrorCode add_power(const FlowLook &look, double *power) override;
 
-  const AdhesionSpec &spec() const { return spec_; }
-  const std::vector<Receptor> &receptors() const { return receptors_; }
   /// Of all bodies with receptors, by their numbers; the same on all ranks.
   std::vector<BodyBonds> measure() const;
   /// Both ends of every bond and its tension, the same on all ranks.
@@ -60,8 +58,6 @@ public:
   std::vector<Line> lines() const;
   /// Since the last call; the same on all ranks.
   std::vector<BondEvent> take_events() { return std::exchange(events_, {}); }
-  double formed() const { return formed_; }
-  double broken() const { return broken_; }
 
 private:
   /// A bond with its tension: the pull on a receptor, and on the other one, unless that is a wall.
@@ -77,9 +73,11 @@ private:
   bool is_on_grid(const AdhesionPair &pair) const;
   const double *other_end(const Bond &bond) const;
   void find_bonds();
+  /// At places that need not be wrapped around periodic sides, in their order. Collective, the same on all ranks.
   PetscErrorCode find_velocity(const std::vector<Real3> &places, std::vector<Real3> *velocities) const;
   PetscErrorCode move_receptors(double dt);
   PetscErrorCode follow_surfaces();
+  /// In [0, 1), of this step; `which`: the kind of event.
   double random(std::size_t receptor, unsigned which) const;
   void break_bonds(double dt);
   std::vector<char> find_free() const;
@@ -91,6 +89,7 @@ private:
   void form_bonds_of_bodies(double dt, const std::vector<char> &free);
   void note_formed(std::size_t receptor);
   void release(Receptor *receptor, double tension);
+  /// Adds factor times the force per mass of a point force to a field on owned faces.
   void add_at(const double place[3], const Real3 &force, double factor, Field *field) const;
   void add(const std::vector<WeightedTarget> &targets) const;
 
@@ -100,7 +99,6 @@ private:
   std::vector<Receptor> receptors_;
   std::vector<Bond> bonds_;
   std::vector<BondEvent> events_;
-  double formed_ = 0, broken_ = 0;  ///< since t = 0
 };
 
 }  // namespace eulastic

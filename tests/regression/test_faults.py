@@ -22,6 +22,8 @@ IN_BOXES = "-threads 2 -cell_placement lattice -cell_count 2,2,1".split()
 # What a verb needs besides a fluid with bodies and the fast method.
 NEEDS = {"EulSMAC": ["-pressure_solver", "smac"], "EulTension": ["-cell_surface_tension", "0.5"],
          "EulMembrane": ["-cell_law", "membrane", "-cell_surface_shear_modulus", "1"],
+         "EulAdhesion": ("-adhesion cell-wall -adhesion_cell_wall_density 9 -adhesion_cell_wall_reach 1.5 -adhesion_cell_wall_rate_on 9 "
+                         "-adhesion_cell_wall_rate_off 1 -adhesion_cell_wall_bond_stiffness .01").split(),
          "EulRigid": ["-cell_law", "rigid"], "EulBoxes": IN_BOXES, "EulThreads": IN_BOXES}
 WITHOUT = {"EulMembrane": "-cell_shear_modulus", "EulRigid": "-cell_shear_modulus", "EulBoxes": "-cell_centre", "EulThreads": "-cell_centre"}
 SECONDS = 300  # far more than it takes on a busy machine, far less than for ever
