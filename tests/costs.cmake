@@ -1,5 +1,6 @@
 # Seconds that tests of more than two seconds take, written by `scripts/test --costs`: ctest starts the longest first, and
 # scripts/test names those that take more than twice as long.
+set_tests_properties("adhesion.Adhesion" PROPERTIES COST 24)
 set_tests_properties("balance.Balance" PROPERTIES COST 32.4)
 set_tests_properties("boundary_integral.BoundaryIntegral" PROPERTIES COST 3.7)
 set_tests_properties("boundary_integral.BoundaryIntegral_avx2" PROPERTIES COST 3.9)

@@ -77,11 +77,11 @@ class Adhesion(SceneCase):
         words = [*("-grid_cells 32,24,24 -grid_length 16,12,12 -boundary_y wall -boundary_z wall -fluid_viscosity 1.2 -body_force 1e-4,0,0 "
                    "-species vessel,cell -vessel_shape tube -vessel_axis x -vessel_diameter 9 -cell_shape sphere -cell_radius 1.2 "
                    "-cell_shear_modulus .05 -cell_placement list -adhesion cell-vessel -adhesion_cell_vessel_region 0,0,0,10,12,12 "
-                   "-time_end 60 -snapshot_interval 60 -cell_positions").split(), file, *pair("cell_vessel", density=10, rate_on=.1)]
+                   "-time_end 30 -snapshot_interval 30 -cell_positions").split(), file, *pair("cell_vessel", density=10, rate_on=.1)]
         for law in ["-vessel_law", "rigid"], ["-vessel_shear_modulus", ".5"]:
             name = law[1].strip(".")
-            found = self.run_together({**{f"{name}{n}": ([*words, *law], {"ranks": n}) for n in (1, 2, 3)},
-                                       f"{name}half": ([*words, *law, "-time_steps_max", 12], {"ranks": 2})})
+            found = self.run_together({**{f"{name}{n}": ([*words, *law], {"ranks": n}) for n in (1, 3)},
+                                       f"{name}half": ([*words, *law, "-time_steps_max", 8], {"ranks": 2})})
             found |= self.run_together({f"{name}rest": ([*words, *law, "-restart", self.room / f"{name}half"], {"ranks": 3})})
             for run, of in found.items():
                 if not run.endswith("half"):
