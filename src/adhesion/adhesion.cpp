@@ -41,6 +41,8 @@ struct Around {
   }
 };
 
+double length_of(const Real3 &way) { return std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]); }
+
 int number_of(const std::vector<Receptor> &receptors, std::ptrdiff_t which) {
   return which < 0 ? 0 : static_cast<int>(receptors[which].body);
 }
@@ -76,7 +78,7 @@ Real3 Adhesion::way_to(const Receptor &from, const double to[3]) const {
   Real3 way{};
   for (int d = 0; d < domain.dimension(); ++d) {
     way[d] = to[d] - from.place[d];
-    const double length = domain.spacing()[d] * domain.domain_cells()[d];
+    const double length = domain.domain_shape().length[d];
     if (!domain.is_wall(d)) way[d] -= length * std::round(way[d] / length);
   }
   return way;
@@ -90,9 +92,9 @@ void Adhesion::find_bonds() {
     const auto other = static_cast<std::ptrdiff_t>(receptor.partner);
     if (!receptor.is_bound() || (other >= 0 && other < static_cast<std::ptrdiff_t>(r))) continue;
     const Real3 way = way_to(receptor, other < 0 ? receptor.anchor : receptors_[other].place);
-    const double length = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+    const double length = length_of(way);
     const double tension = law(receptor).tension(length), share = length > 0 ? tension / length : 0;
-    bonds_.push_back({r, other, {share * way[0], share * way[1], share * way[2]}, length, tension});
+    bonds_.push_back({r, other, {share * way[0], share * way[1], share * way[2]}, tension});
   }
 }
 
@@ -140,7 +142,7 @@ PetscErrorCode Adhesion::move_receptors(double dt) {
   for (std::size_t p = 0; p < places.size(); ++p)
     for (int d = 0; d < domain.dimension(); ++d) {
       moved[p][d] += dt * velocities[p][d];
-      const double length = domain.spacing()[d] * domain.domain_cells()[d];
+      const double length = domain.domain_shape().length[d];
       if (domain.is_wall(d)) moved[p][d] = std::clamp(moved[p][d], 0.0, length);
     }
   PetscFunctionReturn(0);
@@ -207,7 +209,7 @@ bool Adhesion::is_in_region(const AdhesionPair &pair, const Real3 &place) const 
   const Domain &domain = flow_.domain;
   bool inside = true;
   for (int d = 0; d < domain.dimension(); ++d) {
-    const double length = domain.spacing()[d] * domain.domain_cells()[d];
+    const double length = domain.domain_shape().length[d];
     const double wrapped = domain.is_wall(d) ? place[d] : place[d] - length * std::floor(place[d] / length);
     inside = inside && wrapped >= pair.low[d] && wrapped <= pair.high[d];
   }
@@ -221,7 +223,7 @@ Foot Adhesion::foot_on_wall(const AdhesionPair &pair, const Receptor &receptor) 
   Foot foot;
   for (const auto [d, high] : domain.sides()) {
     if (flow_.spec.sides[d][high].kind != SideKind::wall) continue;
-    const double end = high ? domain.spacing()[d] * domain.domain_cells()[d] : 0;
+    const double end = high ? domain.domain_shape().length[d] : 0;
     const double distance = std::fabs(receptor.place[d] - end);
     Real3 place{receptor.place[0], receptor.place[1], receptor.place[2]};
     place[d] = end;
@@ -252,7 +254,7 @@ PetscErrorCode Adhesion::form_bonds_to_walls(double dt, const std::vector<char> 
       const Foot foot = pair.to_wall() ? foot_on_wall(pair, receptors_[r]) : feet[r];
       if (!(foot.found > 0) || !is_in_region(pair, foot.place)) continue;
       const Real3 way = way_to(receptors_[r], foot.place.data());
-      const double distance = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+      const double distance = length_of(way);
       if (distance > pair.law.reach || distance >= distances[r]) continue;
       distances[r] = distance;
       anchors[r] = foot;
@@ -289,7 +291,7 @@ Adhesion::Candidate Adhesion::nearest_partner(std::size_t r, const ReceptorBins 
       const AdhesionPair &pair = spec_.pairs[p];
       if (!pair.joins(static_cast<int>(receptor.species), static_cast<int>(candidate.species))) continue;
       const Real3 way = way_to(receptor, candidate.place);
-      const double distance = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+      const double distance = length_of(way);
       const bool is_nearer = distance < nearest.distance || (distance == nearest.distance && s < nearest.other);
       if (distance <= pair.law.reach && is_nearer) nearest = {distance, s, static_cast<int>(p)};
     }

@@ -65,7 +65,7 @@ private:
     std::size_t receptor;
     std::ptrdiff_t other;  ///< index; negative: the anchor on a wall or a surface of the grid
     Real3 pull;
-    double length, tension;
+    double tension;
   };
   /// From a receptor to what it is bound to, the shortest way across periodic sides.
   Real3 way_to(const Receptor &from, const double to[3]) const;

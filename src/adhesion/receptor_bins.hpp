@@ -3,6 +3,7 @@
 
 #include "adhesion/receptors.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -22,7 +23,7 @@ public:
   void for_near(const Receptor &receptor, const Visit &visit) const;
 
 private:
-  double length(int d) const { return domain_.spacing()[d] * domain_.domain_cells()[d]; }
+  double length(int d) const { return domain_.domain_shape().length[d]; }
   std::array<int, 3> bin_of(const Receptor &receptor) const {
     std::array<int, 3> bin{};
     for (int d = 0; d < domain_.dimension(); ++d) {

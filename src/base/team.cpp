@@ -2,7 +2,9 @@
 
 #include "base/events.hpp"
 
+#ifdef __x86_64__
 #include <immintrin.h>
+#endif
 #include <sched.h>
 #include <utility>
 
@@ -12,6 +14,13 @@ namespace {
 // With a core of its own a thread looks for work for some ten milliseconds, longer than what lies between two parallel
 // regions of a step; without, for some microseconds.
 constexpr int spins_of_own_core = 1000000, spins_of_shared_core = 100;
+
+// Tells the processor that this thread polls; a hint that not every processor has.
+void relax() noexcept {
+#ifdef __x86_64__
+  _mm_pause();
+#endif
+}
 
 thread_local bool is_inside = false;
 thread_local int own_number = 0;
@@ -59,7 +68,7 @@ void ThreadTeam::run(int members, Call call, const void *work) {
   do_part(0);
   for (int spin = 0; running_.load(std::memory_order_acquire) > 0; ++spin) {
     if (spin < spins_.load(std::memory_order_relaxed))
-      _mm_pause();
+      relax();
     else
       sched_yield();
   }
@@ -82,7 +91,7 @@ std::uint64_t ThreadTeam::wait_for_region(std::uint64_t last) {
   for (int spin = spins_.load(std::memory_order_relaxed); spin > 0; --spin) {
     const std::uint64_t region = region_.load(std::memory_order_acquire);
     if (region != last) return region;
-    _mm_pause();
+    relax();
   }
   std::unique_lock lock(mutex_);
   ++asleep_;

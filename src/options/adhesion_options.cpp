@@ -57,8 +57,8 @@ std::string read_adhesion(const std::string &value, Config *config) {
 void add_adhesion(Rows &rows, Config &config) {
   rows.group = "Adhesion";
   Option &pairs = rows.add("adhesion", "",
-                           "which surfaces bind to which; each pair has the options of adhesion "
-                           "NAME1-NAME2");
+                           "pairs of surfaces that adhere; each has its own set of the options "
+                           "adhesion_NAME1_NAME2_...");
   pairs.accepted = "a list without spaces of NAME1-NAME2, two species or twice the same, or NAME-wall";
   pairs.default_note = "none";
   pairs.read = [](const std::string &) { return std::string(); };  // read before this table, which it lengthens
@@ -68,7 +68,7 @@ void add_adhesion(Rows &rows, Config &config) {
     return join(names, ",");
   };
   Option &seed = rows.integer("adhesion_seed", config.adhesion.seed, {0, false, 4294967295.},
-                              "another seed is another chance for every bond");
+                              "seed of the random numbers with which bonds form and break");
   seed.only_with = "-adhesion";
   seed.applies = [&config] { return !config.adhesion.pairs.empty(); };
   for (AdhesionPair &pair : config.adhesion.pairs) {
@@ -79,24 +79,22 @@ void add_adhesion(Rows &rows, Config &config) {
     kernels::BondLaw &law = pair.law;
     rows.real("density", pair.density, positive, "1/area", "receptors per area on the bodies; in 2-D per length")
         .required = true;
-    rows.real("reach", law.reach, positive, "length", "a free receptor binds to what is as near as this").required =
+    rows.real("reach", law.reach, positive, "length", "largest distance at which a free receptor binds").required =
         true;
     rows.real("rate_on", law.rate_on, not_negative, "1/time", "rate at which a receptor within reach binds").required =
         true;
     rows.real("rate_off", law.rate_off, not_negative, "1/time", "rate at which a bond without tension breaks")
         .required = true;
-    rows.real("bond_stiffness", law.stiffness, positive, "force/length", "stiffness of the spring that a bond is")
-        .required = true;
+    rows.real("bond_stiffness", law.stiffness, positive, "force/length", "stiffness of a bond").required = true;
     rows.real("bond_length", law.length, not_negative, "length", "length of a bond without tension");
     rows.real("reactive_compliance", law.reactive_compliance, not_negative, "1/force",
               "x/kT of Bell's law: the tension F multiplies the rate of rupture by exp(F x/kT)");
     rows.real("catch_rate_off", law.catch_rate_off, not_negative, "1/time",
-              "rate of a second path of rupture, which tension closes: catch bonds");
+              "rate of a second path of rupture that tension suppresses (catch bonds)");
     rows.real("catch_compliance", law.catch_compliance, not_negative, "1/force",
               "the tension F multiplies that rate by exp(-F c)");
-    rows.real(
-        "thermal_energy", law.thermal_energy, not_negative, "energy",
-        "kT, with which a stretched bond forms more seldom, in detailed balance; 0: at the same rate within reach");
+    rows.real("thermal_energy", law.thermal_energy, not_negative, "energy",
+              "kT: stretched bonds form at a lower rate, in detailed balance; 0: one rate everywhere within reach");
     add_region(rows, pair);
     rows.prefix.clear();
   }
