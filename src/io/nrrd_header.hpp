@@ -4,6 +4,7 @@
 #include "grid/box.hpp"
 
 #include <cstdint>
+#include <string>
 
 namespace eulastic {
 
