@@ -17,6 +17,7 @@ public:
 
   /// Sets those of `window` where `fraction` is not 0.
   void add(const CellWindow &window, ConstView fraction);
+  bool has(const Int3 &cell) const { return bits_[word(cell[0], cell[1], cell[2])] >> (cell[0] % 64) & 1; }
   /// Whether any of the cells that are set touches `body`, whose centre is in the box. If not, no cell holds a part of
   /// both.
   bool touches(const PlacedConvex &body) const;
