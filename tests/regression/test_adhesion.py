@@ -110,11 +110,11 @@ class Adhesion(SceneCase):
     def test_bodies_that_change_their_rank(self):
         """Receptors go with them, in shear that carries six discs around a periodic box, with bonds to walls and to each other."""
         file = self.room / "discs.csv"
-        file.write_text("x,y,z\n" + "".join(f"{1.2 + 2 * n},{1.1 + 1.9 * (n % 2)},0\n" for n in range(6)))
+        file.write_text("x,y,z\n" + "".join(f"{1.2 + 2 * n},{1.2 + 1.6 * (n % 2)},0\n" for n in range(6)))
         words = [*("-grid_cells 48,16,1 -grid_length 12,4,1 -boundary_y wall -wall_ymax_velocity .2,0,0 -initial_velocity couette "
                    "-fluid_viscosity 1.2 -species disc -disc_shape sphere -disc_radius .9 -disc_shear_modulus .2 -disc_placement list "
                    "-adhesion disc-wall,disc-disc -time_step .25 -time_end 100 -series_interval 10 -disc_positions").split(), file,
-                 *pair("disc_wall", reach=.4, rate_off=.05, reactive_compliance=30), *pair("disc_disc", reach=.4, rate_off=.02)]
+                 *pair("disc_wall", reach=.4, rate_off=.05, reactive_compliance=30), *pair("disc_disc", reach=.8, rate_off=.02)]
         found = self.run_together({**{f"on{n}": ([*words, "-time_steps_max", 230], {"ranks": n}) for n in (1, 2, 4)},
                                    "half": ([*words, "-time_steps_max", 140], {"ranks": 3})})
         found |= self.run_together({"rest": ([*words, "-time_steps_max", 230, "-restart", self.room / "half"], {"ranks": 2})})
