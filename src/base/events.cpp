@@ -36,7 +36,7 @@ PetscErrorCode register_events() {
   PetscFunctionReturn(0);
 }
 
-// What a member of a team does is part of the verb that the team works for.
+// A member of a team logs no events: the calling thread adds its flops to the event around the parallel region.
 VerbScope::VerbScope(Verb verb) : verb_(verb) {
   if (registered && !TeamMember::is_here()) (void)PetscLogEventBegin(verb_ids[static_cast<int>(verb)], 0, 0, 0, 0);
 }

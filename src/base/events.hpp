@@ -1,4 +1,4 @@
-// The verbs and stages that -log_view shows, as scopes that end themselves.
+// Events and stages of -log_view, as scopes that begin with their construction and end with their destruction.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -35,7 +35,7 @@ enum class Stage { setup, step, output, count };
 /// Registers all events and stages; call once after PetscInitialize.
 PetscErrorCode register_events();
 
-/// Logs one verb from construction to destruction; `flops` may be added at any time in between.
+/// Logs one event from construction to destruction. `flops` may be added at any time in between.
 class VerbScope {
 public:
   explicit VerbScope(Verb verb);
@@ -49,7 +49,8 @@ private:
   double flops_ = 0;
 };
 
-/// A stage of the flat table and, because nested ones (-log_view :FILE:ascii_xml) know none, an event around it.
+/// A stage of -log_view, with an event of its own around it: the nested table (-log_view :FILE:ascii_xml) has no
+/// stages.
 class StageScope {
 public:
   explicit StageScope(Stage stage);

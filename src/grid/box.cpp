@@ -25,8 +25,8 @@ Box::Box(const DomainShape &domain, const Int3 &begin, const Int3 &cells, int gh
     spacing_[d] = domain.length[d] / domain.cells[d];
     layout_.ghosts[d] = d < dimension() ? ghosts : 0;
   }
-  // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would fall on few cache sets. Planes and fields are
-  // whole rows, so that an exchange can move rows.
+  // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would map to few cache sets. Planes and fields consist
+  // of whole rows, so that a message can move whole rows.
   layout_.sy = round_up(cells[0] + 2 * ghosts + is_wall(0), 8);
   if (layout_.sy % 64 == 0) layout_.sy += 8;
   layout_.sz = layout_.sy * (cells[1] + 2 * layout_.ghosts[1] + is_wall(1));
