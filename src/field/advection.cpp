@@ -29,7 +29,8 @@ EULASTIC_INLINE void of_faces(const Segment &row, const Field &v, int a, const d
     const std::ptrdiff_t own = v[d].stride(d), back = -q.stride(a);
     const std::ptrdiff_t one = d < a ? own : back, other = d < a ? back : own;  // in the order of directions
     const auto add = [&](auto speed, double factor) EULASTIC_BODY {
-      kernels::add_advection_rate(s, q, d, kernels::turn(d, Dim), speed, factor * inverse_spacing[d], epsilon, rate);
+      kernels::add_advection_rate(s, q, d, kernels::direction_order(d, Dim), speed, factor * inverse_spacing[d],
+                                  epsilon, rate);
     };
     if (d == a)
       add([=](int i) EULASTIC_BODY { return face[i]; }, 1);
@@ -45,7 +46,7 @@ EULASTIC_INLINE void of_centres(const Segment &row, const ConstView &q, const Fi
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t up = v[d].stride(d);
     kernels::add_advection_rate(
-        s, q, d, kernels::turn(d, Dim), [=](int i) EULASTIC_BODY { return face[i] + face[i + up]; },
+        s, q, d, kernels::direction_order(d, Dim), [=](int i) EULASTIC_BODY { return face[i] + face[i + up]; },
         0.5 * inverse_spacing[d], epsilon, rate);
   });
 }
