@@ -5,8 +5,8 @@
 namespace eulastic {
 namespace {
 
-// along(piece, direction) for pieces of a row and all directions, each of which asks for its part of the rows ahead:
-// what one asks for is there when the next begins.
+// Calls along(piece, direction) for pieces of a row and all directions. Before each call the rows ahead of that
+// direction are prefetched piece by piece, so that the prefetches are finished when the next one begins.
 template <int Dim, class Along>
 EULASTIC_INLINE void in_pieces(const Segment &row, const RowsAhead &ahead, const Along &along) {
   constexpr int length = 64;
@@ -21,8 +21,8 @@ EULASTIC_INLINE void in_pieces(const Segment &row, const RowsAhead &ahead, const
 }
 
 template <int Dim>
-EULASTIC_INLINE void of_faces(const Segment &row, const Field &v, int a, const double *inverse_spacing, double epsilon,
-                              const RowsAhead &ahead, double *rate) {
+EULASTIC_INLINE void advect_faces(const Segment &row, const Field &v, int a, const double *inverse_spacing,
+                                  double epsilon, const RowsAhead &ahead, double *rate) {
   const ConstView q = v[a];
   in_pieces<Dim>(row, ahead, [&](const Segment &s, int d) EULASTIC_BODY {
     const double *face = v[d].row(s.j, s.k);
@@ -40,8 +40,9 @@ EULASTIC_INLINE void of_faces(const Segment &row, const Field &v, int a, const d
 }
 
 template <int Dim>
-EULASTIC_INLINE void of_centres(const Segment &row, const ConstView &q, const Field &v, const double *inverse_spacing,
-                                double epsilon, const RowsAhead &ahead, double *rate) {
+EULASTIC_INLINE void advect_centres(const Segment &row, const ConstView &q, const Field &v,
+                                    const double *inverse_spacing, double epsilon, const RowsAhead &ahead,
+                                    double *rate) {
   in_pieces<Dim>(row, ahead, [&](const Segment &s, int d) EULASTIC_BODY {
     const double *face = v[d].row(s.j, s.k);
     const std::ptrdiff_t up = v[d].stride(d);
@@ -51,33 +52,33 @@ EULASTIC_INLINE void of_centres(const Segment &row, const ConstView &q, const Fi
   });
 }
 
-EULASTIC_CLONES void of_faces_2d(const Segment &s, const Field &v, int a, const double *h, double e,
-                                 const RowsAhead &ahead, double *r) {
-  of_faces<2>(s, v, a, h, e, ahead, r);
+EULASTIC_CLONES void advect_faces_2d(const Segment &s, const Field &v, int a, const double *h, double e,
+                                     const RowsAhead &ahead, double *r) {
+  advect_faces<2>(s, v, a, h, e, ahead, r);
 }
-EULASTIC_CLONES void of_faces_3d(const Segment &s, const Field &v, int a, const double *h, double e,
-                                 const RowsAhead &ahead, double *r) {
-  of_faces<3>(s, v, a, h, e, ahead, r);
+EULASTIC_CLONES void advect_faces_3d(const Segment &s, const Field &v, int a, const double *h, double e,
+                                     const RowsAhead &ahead, double *r) {
+  advect_faces<3>(s, v, a, h, e, ahead, r);
 }
-EULASTIC_CLONES void of_centres_2d(const Segment &s, const ConstView &q, const Field &v, const double *h, double e,
-                                   const RowsAhead &ahead, double *r) {
-  of_centres<2>(s, q, v, h, e, ahead, r);
+EULASTIC_CLONES void advect_centres_2d(const Segment &s, const ConstView &q, const Field &v, const double *h, double e,
+                                       const RowsAhead &ahead, double *r) {
+  advect_centres<2>(s, q, v, h, e, ahead, r);
 }
-EULASTIC_CLONES void of_centres_3d(const Segment &s, const ConstView &q, const Field &v, const double *h, double e,
-                                   const RowsAhead &ahead, double *r) {
-  of_centres<3>(s, q, v, h, e, ahead, r);
+EULASTIC_CLONES void advect_centres_3d(const Segment &s, const ConstView &q, const Field &v, const double *h, double e,
+                                       const RowsAhead &ahead, double *r) {
+  advect_centres<3>(s, q, v, h, e, ahead, r);
 }
 
 }  // namespace
 
 void face_advection_rate(const Segment &row, const Field &v, int a, const double *inverse_spacing, double epsilon,
                          const RowsAhead &ahead, double *rate) {
-  (v.count() == 2 ? of_faces_2d : of_faces_3d)(row, v, a, inverse_spacing, epsilon, ahead, rate);
+  (v.count() == 2 ? advect_faces_2d : advect_faces_3d)(row, v, a, inverse_spacing, epsilon, ahead, rate);
 }
 
 void centre_advection_rate(const Segment &row, ConstView q, const Field &v, const double *inverse_spacing,
                            double epsilon, const RowsAhead &ahead, double *rate) {
-  (v.count() == 2 ? of_centres_2d : of_centres_3d)(row, q, v, inverse_spacing, epsilon, ahead, rate);
+  (v.count() == 2 ? advect_centres_2d : advect_centres_3d)(row, q, v, inverse_spacing, epsilon, ahead, rate);
 }
 
 }  // namespace eulastic
