@@ -5,6 +5,7 @@
 
 namespace eulastic {
 
+/// The routines that -log_view shows as events.
 enum class Verb {
   exchange,
   wait,
@@ -30,6 +31,7 @@ enum class Verb {
   count
 };
 
+/// The stages of -log_view.
 enum class Stage { setup, step, output, count };
 
 /// Registers all events and stages; call once after PetscInitialize.

@@ -22,9 +22,9 @@ public:
   static constexpr int words = limbs + 1;  ///< the last word counts terms that are not finite
 
   void add(double value) noexcept;
-  /// Adds values[0..n), n <= several. The sum has the same bits as with single additions, and is much faster if the
+  /// Adds values[0..n), n <= buffer_size. The sum has the same bits as with single additions, and is much faster if the
   /// exponents are similar.
-  static constexpr int several = 64;
+  static constexpr int buffer_size = 64;
   void add(const double *values, int n) noexcept;
   /// Adds the sum of `other`.
   void add(const Superaccumulator &other) noexcept;
@@ -50,7 +50,7 @@ public:
   void add(int s, double value) noexcept {
     Buffer &w = buffers_[s];
     w.value[w.count++] = value;
-    if (w.count == Superaccumulator::several) flush(s);
+    if (w.count == Superaccumulator::buffer_size) flush(s);
   }
   /// Adds values[0..n), a piece of a row that starts at absolute x index `first`. The bits are reproducible only if all
   /// values of a block that one rank owns are added in one call.
@@ -62,7 +62,7 @@ public:
 
 private:
   struct Buffer {
-    double value[Superaccumulator::several];
+    double value[Superaccumulator::buffer_size];
     int count = 0;
   };
   void flush(int s) noexcept;

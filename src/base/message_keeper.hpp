@@ -7,6 +7,7 @@
 
 namespace eulastic {
 
+/// Handles PETSc's errors during its lifetime.
 class MessageKeeper {
 public:
   MessageKeeper() { (void)PetscPushErrorHandler(keep, &text_); }

@@ -6,9 +6,11 @@
 
 namespace eulastic {
 
+/// The progress report of one run.
 class Progress {
 public:
   enum class Style { silent, terminal, log };
+  /// The range of times and steps of the run, and its size.
   struct Goal {
     double time_begin = 0, time_end = 0;   ///< simulated time
     long steps_begin = 0, steps_max = -1;  ///< a negative steps_max means no limit
@@ -29,6 +31,7 @@ public:
   void finish(double time, long step, double dt, double wall);
 
 private:
+  /// Fraction of the run that was done at a wall time in seconds.
   struct Mark {
     double done = 0, wall = 0;
   };

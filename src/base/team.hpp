@@ -18,6 +18,7 @@ enum class Waiting {
   sleep,  ///< sleeps almost at once, so that its core is free for other threads
 };
 
+/// The threads of a rank, which run parallel regions together.
 class ThreadTeam {
 public:
   ThreadTeam() noexcept { set_waiting(Waiting::sleep); }

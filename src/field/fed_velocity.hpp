@@ -10,6 +10,7 @@
 
 namespace eulastic {
 
+/// Values of the normal velocity on a plane of faces.
 class FedVelocity {
 public:
   /// Copies `component`, normal to direction d, on the faces with the global index `index` from the ranks that own them

@@ -14,6 +14,7 @@
 
 namespace eulastic {
 
+/// Owns the memory of its components, except for parts and fields in memory of another owner.
 class Field {
 public:
   Field() = default;

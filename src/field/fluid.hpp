@@ -6,6 +6,7 @@
 
 namespace eulastic {
 
+/// Parameters of the fluid.
 struct Fluid {
   double density = 1;    ///< rho
   double viscosity = 1;  ///< mu, dynamic; also of bodies without a viscosity of their own

@@ -37,6 +37,7 @@ struct Ghost {
 /// Lists all ghosts of this rank from the scatter of the domain's DMDA. Collective.
 PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts);
 
+/// Updates ghosts of fields on a domain or in boxes. A scatter is built for each width and number of components.
 class GhostExchange {
 public:
   explicit GhostExchange(const Domain &domain)

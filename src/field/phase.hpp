@@ -21,6 +21,7 @@ struct Extent {
   }
 };
 
+/// The state of a phase on this rank.
 struct Phase {
   std::string species;  ///< name of the species to which it belongs
   Material material;

@@ -9,6 +9,7 @@
 
 namespace eulastic {
 
+/// Box, boundaries and ghost exchange of a phase.
 struct PhasePlace {
   const Box *box;
   const BoxSides *sides;

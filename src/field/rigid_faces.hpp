@@ -92,6 +92,7 @@ struct RigidBody {
   Real3 centre{};  ///< from the middle of the box, in cells
 };
 
+/// All rigid bodies of the scene, and the faces at them on this rank.
 class RigidFaces {
 public:
   /// A fluid face with neighbours inside a body. Links are ordered low x, high x, low y, ...

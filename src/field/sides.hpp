@@ -26,6 +26,7 @@ struct WallMotion {
   double speed() const;  ///< |U|
 };
 
+/// The kind of a boundary condition.
 enum class SideKind : unsigned char { wall, symmetry, inflow, pressure, outflow };
 /// Whether the pressure is given, so that fluid may cross the boundary in either direction.
 constexpr bool is_open(SideKind kind) { return kind == SideKind::pressure || kind == SideKind::outflow; }
@@ -46,6 +47,7 @@ struct OutletLoad {
   bool exists() const { return resistance > 0 || capacity > 0; }
 };
 
+/// The boundary condition on one face of the box.
 struct Side {
   SideKind kind = SideKind::wall;
   WallMotion motion;                           ///< velocity of a wall

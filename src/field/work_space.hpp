@@ -10,6 +10,7 @@
 
 namespace eulastic {
 
+/// Owns fields on a domain that routines lease.
 class WorkSpace {
 public:
   /// Leased fields, which are returned at the end of the scope. Their initial values are undefined; debug builds fill

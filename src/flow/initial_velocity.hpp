@@ -30,6 +30,7 @@ const std::vector<std::string> &initial_velocity_names();
 /// Returns {a, b} for shear_wave_ab, {-1, -1} for the others.
 std::array<int, 2> shear_wave_directions(InitialVelocity kind);
 
+/// Parameters of the initial velocity.
 struct InitialFlow {
   InitialVelocity kind = InitialVelocity::zero;
   double amplitude = 1;  ///< A, length / time; not used by zero, uniform and couette

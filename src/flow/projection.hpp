@@ -14,6 +14,7 @@ struct PressureRotation {
   double uniform = 0, local = 0;
 };
 
+/// Owns the pressure solver and performs the projections of a flow.
 class Projection {
 public:
   /// Number of fields of the work space that are leased at the same time. `open`: there is an open boundary; `rigid`:

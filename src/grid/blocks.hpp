@@ -51,8 +51,8 @@ template <class Row>
 struct Sides {
   bool wraps_x;
   int cells_x;
-  bool wall[3][2];
-  bool unextended[3];
+  bool wall[3][2];     ///< the block touches this boundary of the domain
+  bool unextended[3];  ///< no layers along this direction
   int beyond[3] = {};  ///< 1: stages also advance the faces on an open high boundary (normal velocity)
 
   explicit Sides(const Box &box);
@@ -98,12 +98,12 @@ public:
   /// Calls work(task) for all tasks, in parallel.
   template <class Work>
   void for_tasks(const Work &work) const {
-    const auto go = [&](const std::vector<Task> &tasks, int team) {
+    const auto run_all = [&](const std::vector<Task> &tasks, int team) {
       in_parallel(team, static_cast<int>(tasks.size()), [&](int t) { work(tasks[t]); });
     };
     const int team = threads_of_pass();
-    go(tasks(team), team);
-    for (int s = 1; s < depth_ && team > 1; ++s) go(tasks_between(team, s), team);
+    run_all(tasks(team), team);
+    for (int s = 1; s < depth_ && team > 1; ++s) run_all(tasks_between(team, s), team);
   }
 
   /// Calls rows(stage, first row, end of j) for all rows of a task, plane by plane and including layers. Always

@@ -70,8 +70,8 @@ std::vector<Segment> Box::cells_at(int d, bool high, int layers) const {
   return touches(d, high) ? rows_between(begin, end) : std::vector<Segment>();
 }
 
-std::vector<Box::Side> Box::sides() const {
-  std::vector<Side> all;
+std::vector<Box::BoundaryFace> Box::sides() const {
+  std::vector<BoundaryFace> all;
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2 && is_wall(d); ++high) all.push_back({d, high == 1});
   return all;

@@ -12,6 +12,7 @@
 
 namespace eulastic {
 
+/// Whether a direction is periodic or has boundaries, of any kind (field/sides.hpp).
 enum class Boundary : unsigned char { periodic, wall };
 
 using Int3 = std::array<int, 3>;
@@ -57,6 +58,7 @@ struct Layout {
   std::ptrdiff_t offset(int i, int j, int k) const noexcept { return origin + i + j * sy + k * sz; }
 };
 
+/// The geometry of one block of cells with ghosts.
 class Box {
 public:
   static constexpr int stencil_width = 3;  ///< ghost layers that WENO5 reads
@@ -77,12 +79,13 @@ public:
   bool is_open(int d, bool high) const { return is_wall(d) && domain_.open[d][high]; }
   /// Whether the pressure is given on any boundary; otherwise it is determined up to a constant.
   bool any_open() const;
-  struct Side {
+  /// One of the six faces of the domain.
+  struct BoundaryFace {
     int d;
     bool high;
   };
   /// Returns all boundaries of the domain, low before high.
-  std::vector<Side> sides() const;
+  std::vector<BoundaryFace> sides() const;
   /// Maps global index i along d into the domain if d is periodic; otherwise returns i.
   int image(int d, int i) const;
 

@@ -46,17 +46,17 @@ bool fits(const GridSpec &spec, const Int3 &ranks) {
 Int3 Domain::decompose(const GridSpec &spec, int ranks) {
   constexpr double min_cost_ratio = 1.3;  // ratio of costs from which x is split more than necessary
   constexpr double cell_cost = .125;  // relative to the cost of a ghost cell of one layer in all exchanges of a step
-  Int3 best{0, 0, 0}, shorter{0, 0, 0};
+  Int3 best{0, 0, 0}, with_shorter_rows{0, 0, 0};
   if (!spec.starts[0].empty()) {
     for (int d = 0; d < 3; ++d) best[d] = static_cast<int>(spec.starts[d].size()) - 1;
-    return best[0] * best[1] * best[2] == ranks && fits(spec, best) ? best : shorter;
+    return best[0] * best[1] * best[2] == ranks && fits(spec, best) ? best : with_shorter_rows;
   }
-  double best_cost = 0, shorter_cost = 0;
+  double best_cost = 0, cost_with_shorter_rows = 0;
   for (int px = 1; px <= ranks; ++px) {
     if (ranks % px) continue;
     if (spec.processors[0] && px != spec.processors[0]) continue;
-    const bool least = best[0] == 0 || best[0] == px;
-    if (!least && spec.cells[0] < sum_block * px) break;
+    const bool is_least_split = best[0] == 0 || best[0] == px;
+    if (!is_least_split && spec.cells[0] < sum_block * px) break;
     for (int py = 1; py <= ranks / px; ++py) {
       if ((ranks / px) % py) continue;
       const Int3 trial{px, py, ranks / px / py};
@@ -70,14 +70,14 @@ Int3 Domain::decompose(const GridSpec &spec, int ranks) {
                    mean = double(spec.cells[0]) * spec.cells[1] * spec.cells[2] / ranks;
       const double cost = double(n[0]) * ((py > 1) * n[2] * 1.001 + (trial[2] > 1) * n[1]) +
                           double(px > 1) * n[1] * n[2] + cell_cost * (size - mean);
-      Int3 &chosen = least ? best : shorter;
-      double &chosen_cost = least ? best_cost : shorter_cost;
+      Int3 &chosen = is_least_split ? best : with_shorter_rows;
+      double &chosen_cost = is_least_split ? best_cost : cost_with_shorter_rows;
       if (chosen[0] != 0 && cost >= chosen_cost) continue;
       chosen = trial;
       chosen_cost = cost;
     }
   }
-  return shorter[0] != 0 && best_cost > min_cost_ratio * shorter_cost ? shorter : best;
+  return with_shorter_rows[0] != 0 && best_cost > min_cost_ratio * cost_with_shorter_rows ? with_shorter_rows : best;
 }
 
 Int3 Domain::largest_box(const GridSpec &spec, const Int3 &ranks) {

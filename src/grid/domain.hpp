@@ -18,6 +18,7 @@ struct GridSpec : DomainShape {
   int ghosts = 5;  ///< ghost layers: WENO5 reads three, the extrapolation of B outside bodies reads five
 };
 
+/// The grid of a run, distributed over the ranks of a communicator.
 class Domain : public Box {
 public:
   /// Splits the cells among the ranks of `comm` and creates the DMDA. x is split only if `spec` requires it, if y and z

@@ -12,6 +12,7 @@ namespace eulastic {
 /// element by element and would often dominate.
 constexpr int whole_vectors(int n) { return (n + 63) / 64 * 64; }
 
+/// Owns `rows` rows of scratch for a box.
 class RowScratch {
 public:
   RowScratch(const Box &box, int rows)

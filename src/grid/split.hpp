@@ -15,6 +15,7 @@ inline int cut_unit(int cells, int parts) {
   return unit;
 }
 
+/// The decomposition of the cells of the domain.
 struct Split {
   std::array<std::vector<int>, 3> starts;  ///< [direction][position]: first cell; the number of cells at the end
 

@@ -20,6 +20,7 @@ EULASTIC_INLINE double surface_level(double psi) noexcept {
   return q * numerator / denominator;
 }
 
+/// Curvatures of a surface at one point.
 struct Curvatures {
   double sum = 0, product = 0;  ///< of the principal curvatures, positive for a ball; 2-D: the second one is 0
 };

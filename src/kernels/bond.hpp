@@ -6,6 +6,7 @@
 
 namespace eulastic::kernels {
 
+/// Parameters and rates of a bond.
 struct BondLaw {
   double stiffness = 0;              ///< k, force per length
   double length = 0;                 ///< l_0, length without tension

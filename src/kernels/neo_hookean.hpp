@@ -5,6 +5,7 @@
 
 namespace eulastic::kernels {
 
+/// Stress and energy of the neo-Hookean law at one point.
 struct NeoHookean {
   /// Whether the stress contains products of off-diagonal components, so that the normal stress at a centre reads its
   /// edges.

@@ -20,7 +20,7 @@ struct Directions {
   }
   /// Returns the directions with X and Y first.
   template <int X, int Y>
-  EULASTIC_INLINE Directions seen_from() const noexcept {
+  EULASTIC_INLINE Directions reordered() const noexcept {
     constexpr int Z = 3 - X - Y;
     return {stride<X>(), stride<Y>(), stride<Z>(), inverse<X>(), inverse<Y>(), inverse<Z>()};
   }
@@ -64,7 +64,7 @@ struct SolidShear {
 
   template <int X, int Y>
   EULASTIC_INLINE double slope(const Directions &d, std::ptrdiff_t o) const noexcept {
-    const Directions seen = d.seen_from<X, Y>();
+    const Directions seen = d.reordered<X, Y>();
     const EdgeKink kink = edge_kink<Dim>(phi + o, seen, excess);
     const double own = v[X][o] - v[X][o - seen.b], other = v[Y][o] - v[Y][o - seen.a];
     return fma((kink.part - 1) * kink.along, own + seen.ia / seen.ib * other, own);

@@ -10,6 +10,7 @@
 
 namespace eulastic::kernels {
 
+/// A vector at one point.
 struct Direction {
   double x, y, z;
 };

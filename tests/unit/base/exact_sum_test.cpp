@@ -152,7 +152,8 @@ TEST(Superaccumulator, SeveralAtOnceAreTheirExactSum) {
     for (const bool both_signs : {false, true})
       for (const int top : {0, 60, -400, 850, 1020, -850, -1000})
         for (int round = 0; round < 20; ++round) {
-          std::vector<double> values(round < 10 ? Superaccumulator::several : between(1, Superaccumulator::several));
+          std::vector<double> values(round < 10 ? Superaccumulator::buffer_size
+                                                : between(1, Superaccumulator::buffer_size));
           for (double &v : values) {
             const double mantissa = 2 - std::ldexp(double(random() % (round % 2 ? 1ull << 52 : 4)), -52);
             v = std::ldexp(mantissa, std::max(top - between(0, spread), -1073)) * (both_signs && random() % 2 ? -1 : 1);
