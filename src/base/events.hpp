@@ -40,14 +40,14 @@ PetscErrorCode register_events();
 /// Logs one event from construction to destruction. `flops` may be added at any time in between.
 class VerbScope {
 public:
-  explicit VerbScope(Verb verb);
+  explicit VerbScope(Verb event);
   ~VerbScope();
   VerbScope(const VerbScope &) = delete;
   VerbScope &operator=(const VerbScope &) = delete;
   void flops(double count) noexcept { flops_ += count; }
 
 private:
-  Verb verb_;
+  Verb event_;
   double flops_ = 0;
 };
 

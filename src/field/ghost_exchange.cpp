@@ -33,7 +33,9 @@ void for_block(const Int3 &begin, const Int3 &end, const Visit &visit) {
 }
 
 // Offset of the first point in the memory of a field, where its first row begins.
-std::ptrdiff_t first_offset(const Layout &own) { return own.offset(-own.ghosts[0], -own.ghosts[1], -own.ghosts[2]); }
+std::ptrdiff_t first_offset(const Layout &layout) {
+  return layout.offset(-layout.ghosts[0], -layout.ghosts[1], -layout.ghosts[2]);
+}
 
 // Whether no ghost has to be received.
 bool is_inside(const WantedGhosts &wanted) { return wanted.rows && wanted.rows->inside(); }
@@ -52,20 +54,20 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
                                 &near_points[1], &near_points[2]));
   PetscCall(DMDAGetStencilWidth(domain.dm(), &width));
   PetscCall(DMDAGetScatter(domain.dm(), &scatter, nullptr));
-  const Layout &own = domain.layout();
-  const auto offset = [&own](const Int3 &p) { return static_cast<PetscInt>(own.offset(p[0], p[1], p[2])); };
+  const Layout &layout = domain.layout();
+  const auto offset = [&layout](const Int3 &p) { return static_cast<PetscInt>(layout.offset(p[0], p[1], p[2])); };
   Int3 n, near_begin, near_end, begin, end;  // of owned points, of points of the DMDA, and of all points in memory
   for (int d = 0; d < 3; ++d) {
     n[d] = static_cast<int>(points[d]);
     near_begin[d] = static_cast<int>(near_first[d] - first[d]);
     near_end[d] = near_begin[d] + static_cast<int>(near_points[d]);
-    begin[d] = -own.ghosts[d];
-    end[d] = n[d] + own.ghosts[d];
+    begin[d] = -layout.ghosts[d];
+    end[d] = n[d] + layout.ghosts[d];
   }
-  std::vector<Source> sources(own.size), owned, near(std::size_t(near_points[0]) * near_points[1] * near_points[2]);
+  std::vector<Source> sources(layout.size), owned, near(std::size_t(near_points[0]) * near_points[1] * near_points[2]);
   for_block({}, n, [&](const Int3 &p) {
-    owned.push_back({static_cast<PetscInt>(domain.rank()), offset(p), static_cast<PetscInt>(own.size),
-                     static_cast<PetscInt>(own.sy), static_cast<PetscInt>(own.sz)});
+    owned.push_back({static_cast<PetscInt>(domain.rank()), offset(p), static_cast<PetscInt>(layout.size),
+                     static_cast<PetscInt>(layout.sy), static_cast<PetscInt>(layout.sz)});
   });
   PetscCall(broadcast_sources(scatter, owned.data(), near.data()));
   auto next = near.begin();
@@ -74,18 +76,19 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
   for_block(begin, end, [&](const Int3 &p) {
-    Int3 known;
-    for (int d = 0; d < 3; ++d) known[d] = std::clamp<int>(p[d], -width, n[d] + width - 1);
-    const Source &source = sources[offset(known)];
-    if (known == p || source.rank < 0) return;
+    Int3 inner_point;
+    for (int d = 0; d < 3; ++d) inner_point[d] = std::clamp<int>(p[d], -width, n[d] + width - 1);
+    const Source &source = sources[offset(inner_point)];
+    if (inner_point == p || source.rank < 0) return;
     leaves.push_back(offset(p));
-    roots.push_back({source.rank, source.offset + (p[0] - known[0]) + (p[1] - known[1]) * source.sy +
-                                      (p[2] - known[2]) * source.sz});
+    roots.push_back({source.rank, source.offset + (p[0] - inner_point[0]) + (p[1] - inner_point[1]) * source.sy +
+                                      (p[2] - inner_point[2]) * source.sz});
   });
   SfHandle outer_ghosts;
   PetscCall(PetscSFCreate(domain.comm(), outer_ghosts.put()));
-  PetscCall(PetscSFSetGraph(outer_ghosts.get(), static_cast<PetscInt>(own.size), static_cast<PetscInt>(leaves.size()),
-                            leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
+  PetscCall(PetscSFSetGraph(outer_ghosts.get(), static_cast<PetscInt>(layout.size),
+                            static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES, roots.data(),
+                            PETSC_COPY_VALUES));
   PetscCall(broadcast_sources(outer_ghosts.get(), sources.data(), sources.data()));
 
   for_block(begin, end, [&](const Int3 &p) {
@@ -100,12 +103,12 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
 PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) {
   PetscFunctionBeginUser;
   if (!ghosts_) PetscCall(find_(&ghosts_.emplace()));
-  const Layout &own = box_->layout();
+  const Layout &layout = box_->layout();
   const bool whole_rows = box_->whole_rows();
-  const std::ptrdiff_t unit = whole_rows ? own.sy : 1;
+  const std::ptrdiff_t unit = whole_rows ? layout.sy : 1;
   const auto wanted = [&](const Int3 &at) {
     for (int d = whole_rows ? 1 : 0; d < 3; ++d)
-      if (at[d] < -width || at[d] >= own.cells[d] + width) return false;
+      if (at[d] < -width || at[d] >= layout.cells[d] + width) return false;
     return !whole_rows || at[0] == 0;
   };
   std::vector<PetscInt> leaves;
@@ -113,19 +116,19 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) 
   // Returns the unit that contains the point at an offset of component f. Fields consist of whole rows, and where units
   // are rows, these have the same length on all ranks.
   const auto unit_of = [&](std::ptrdiff_t field_size, int f, std::ptrdiff_t offset) {
-    return static_cast<PetscInt>((f * field_size + offset - first_offset(own)) / unit);
+    return static_cast<PetscInt>((f * field_size + offset - first_offset(layout)) / unit);
   };
   for (int f = 0; f < fields; ++f)
     for (const Ghost &ghost : *ghosts_)
       if (wanted(ghost.at)) {
-        leaves.push_back(unit_of(own.size, f, own.offset(ghost.at[0], ghost.at[1], ghost.at[2])));
+        leaves.push_back(unit_of(layout.size, f, layout.offset(ghost.at[0], ghost.at[1], ghost.at[2])));
         roots.push_back({ghost.owner, unit_of(ghost.size, f, ghost.offset)});
       }
   PetscCall(PetscSFCreate(comm_, sf));
   PetscCall(PetscSFSetFromOptions(*sf));
   PetscInt count;
   // an error if the number exceeds PetscInt
-  PetscCall(PetscIntCast(static_cast<PetscInt64>(fields) * own.size / unit, &count));
+  PetscCall(PetscIntCast(static_cast<PetscInt64>(fields) * layout.size / unit, &count));
   PetscCall(PetscSFSetGraph(*sf, count, static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES,
                             roots.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(*sf));
@@ -189,8 +192,8 @@ void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
   constexpr int ahead = 8;  // rows: hardware prefetchers do not detect accesses to the ends of rows
   if (!box_->wraps_x() || !wanted.row_ends) return;
   Field &field = *wanted.field;
-  const Layout &own = field.layout();
-  const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*box_);
+  const Layout &layout = field.layout();
+  const int n = layout.cells[0], width = std::min(wanted.width, layout.ghosts[0]), parts = row_parts(*box_);
   const int layers = is_inside(wanted) ? 0 : width;
   const Box::Range y = box_->points_near(1, true, layers), z = box_->points_near(2, true, layers);
   in_parallel(parts, parts, [&](int part) {
@@ -203,7 +206,7 @@ void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
             if (span.begin >= span.end || (span.begin >= width && span.end <= n - width)) continue;
           }
           double *row = field[f].row(j, k);
-          const double *later = row + ahead * own.sy;
+          const double *later = row + ahead * layout.sy;
           for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);
           for (int m = 1; m <= width; ++m) {
             row[-m] = row[n - m];

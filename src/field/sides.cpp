@@ -15,11 +15,12 @@ namespace eulastic {
 void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflection rule, int width,
              const OccupiedRows *rows) {
   const std::ptrdiff_t s = q.stride(d);
-  const Layout &own = box.layout();
-  const int last = (high ? box.domain_cells()[d] - 1 : 0) - own.begin[d];  // index of the last cell before the boundary
-  width = std::min(width, own.ghosts[d] + (high ? own.cells[d] - 1 - last : last));
+  const Layout &layout = box.layout();
+  const int last =
+      (high ? box.domain_cells()[d] - 1 : 0) - layout.begin[d];  // index of the last cell before the boundary
+  width = std::min(width, layout.ghosts[d] + (high ? layout.cells[d] - 1 - last : last));
   if (width <= 0) return;
-  const Plane plane(own, d);
+  const Plane plane(layout, d);
   const std::ptrdiff_t step = high ? s : -s;                                    // outward
   const std::ptrdiff_t wall = high || !staggered ? last * s + step : last * s;  // first point on or behind the boundary
   const std::ptrdiff_t mirror = staggered ? 0 : -step;                          // mirror image of that point
