@@ -45,13 +45,13 @@ struct MarkedBall : InterfaceScene {
     EXPECT_EQ(surface->find(phase, smooth), 0);
     markers = std::make_unique<SurfaceMarkers>(domain);
   }
-  std::size_t owned_nearest() const {
-    return std::count_if(surface->all().begin(), surface->all().begin() + surface->nearest(),
+  std::size_t owned_nearest_count() const {
+    return std::count_if(surface->all().begin(), surface->all().begin() + surface->nearest_count(),
                          [](const SurfaceCells::Cell &cell) { return cell.owned; });
   }
   template <int Dim>
   void set_strain(double stretch) {
-    for (std::size_t c = 0; c < surface->nearest(); ++c) {
+    for (std::size_t c = 0; c < surface->nearest_count(); ++c) {
       const SurfaceCells::Cell &cell = surface->all()[c];
       kernels::Tensor<Dim> P = kernels::tangential<Dim>(normal_of<Dim>(cell.normal));
       for (auto &row : P)
@@ -83,7 +83,7 @@ void tells_the_strain(double stretch) {
   ASSERT_EQ(ball.markers->move(0, velocity, &ball.all), 0);
   std::vector<SurfaceMarkers::Strain> strains;
   ball.markers->find_strain(*ball.surface, 0, &strains);
-  EXPECT_EQ(strains.size(), ball.owned_nearest());
+  EXPECT_EQ(strains.size(), ball.owned_nearest_count());
   EXPECT_GT(strains.size(), Dim == 2 ? 50u : 1000u);
   kernels::Tensor<Dim> B{};
   for (int x = 0; x < Dim; ++x)
@@ -129,7 +129,7 @@ TEST(SurfaceMarkers, AreSilentWhereThereAreNone) {
   std::vector<SurfaceMarkers::Strain> strains;
   ball.markers->find_strain(*ball.surface, 0, &strains);
   EXPECT_GT(strains.size(), 10u);
-  EXPECT_LT(strains.size() + 10, ball.owned_nearest());
+  EXPECT_LT(strains.size() + 10, ball.owned_nearest_count());
 }
 
 TEST(SurfaceMarkers, MoveWithALinearFlowAndAcrossTheBox) {
