@@ -165,7 +165,7 @@ TEST(Multigrid, TransfersAreConservativeAndLinear) {
 
 // Against the normal equations of small vectors, solved by hand or known by construction.
 TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
-  SweepSums s;
+  LeastSquaresSums s;
   s.directions = 2;  // L_0 = (1, 0, 0), L_1 = (1, 2, 0), D = (3, 4, 5) = 1 L_0 + 2 L_1 + (0, 0, 5)
   s.square = 50;
   s.with[0] = 3;
@@ -173,7 +173,7 @@ TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
   s.product[0][0] = 1;
   s.product[1][0] = 1;
   s.product[1][1] = 5;
-  SweepMinimum m = minimise(s);
+  LeastSquaresSolution m = minimise(s);
   EXPECT_DOUBLE_EQ(m.coefficient[0], 1);
   EXPECT_DOUBLE_EQ(m.coefficient[1], 2);
   EXPECT_DOUBLE_EQ(m.square, 25);
@@ -188,7 +188,7 @@ TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
   EXPECT_EQ(m.coefficient[2], 0);
   EXPECT_DOUBLE_EQ(m.square, 25);
 
-  SweepSums zero_first;
+  LeastSquaresSums zero_first;
   zero_first.directions = 2;
   zero_first.square = 9;
   zero_first.with[1] = 6;
@@ -199,7 +199,7 @@ TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
   EXPECT_GT(m.square, 0);  // exactly solved, but never trusted beyond the rounding of the sums
   EXPECT_LE(m.square, 9e-14 * 1.001);
 
-  m = minimise(SweepSums{});
+  m = minimise(LeastSquaresSums{});
   EXPECT_EQ(m.coefficient[0], 0);
   EXPECT_EQ(m.square, 0);
   s.square = std::nan("");

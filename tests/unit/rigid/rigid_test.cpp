@@ -24,7 +24,7 @@ std::unique_ptr<RigidFaces> faces_of(Scene *scene, const GridSpec &grid, Species
   RigidBodies bodies(scene->domain, scene->solver.exchange());
   std::string wrong;
   EXPECT_EQ(bodies.add(spec, {{spec.centre, {}}}, 1, &phase, &wrong), 0);
-  EXPECT_EQ(bodies.place(0, 0), 0);
+  EXPECT_EQ(bodies.find_faces(0, 0), 0);
   return std::make_unique<RigidFaces>(bodies.faces());
 }
 
@@ -160,8 +160,8 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
     std::string wrong;
     ASSERT_EQ(bodies[n]->add(ball, {{ball.centre, {}}}, 1, &phases[n], &wrong), 0);
   }
-  for (const double before : {0., 0.1, 1.3, time}) ASSERT_EQ(bodies[0]->place(before, before - 0.1), 0);
-  ASSERT_EQ(bodies[1]->place(time, time - 0.1), 0);
+  for (const double before : {0., 0.1, 1.3, time}) ASSERT_EQ(bodies[0]->find_faces(before, before - 0.1), 0);
+  ASSERT_EQ(bodies[1]->find_faces(time, time - 0.1), 0);
   EXPECT_NEAR(bodies[0]->faces().bodies[13].centre[0], (0.3 + 0.8 * way - 0.8) / 0.1, 1e-9);
   int cuts = 0, runs = 0;
   for (int a = 0; a < 2; ++a)
@@ -213,15 +213,15 @@ TEST(TravellingBodies, TouchingIsFound) {
     std::string wrong;
     ASSERT_EQ(bodies.add(*species, {{species->centre, {}}}, 1, &phase, &wrong), 0);
   }
-  ASSERT_EQ(bodies.place(0.1, 0.1), 0);  // .3 apart
-  EXPECT_EQ(bodies.touching(), "");
+  ASSERT_EQ(bodies.find_faces(0.1, 0.1), 0);  // .3 apart
+  EXPECT_EQ(bodies.contact_message(), "");
   for (const double time : {0.39, 0.5}) {
-    ASSERT_EQ(bodies.place(time, time - 0.02), 0);
+    ASSERT_EQ(bodies.find_faces(time, time - 0.02), 0);
     for (const char *piece : {"-ball_velocity", "post and ball", "accepted: paths with fluid between"})
-      EXPECT_NE(bodies.touching().find(piece), std::string::npos) << bodies.touching();
+      EXPECT_NE(bodies.contact_message().find(piece), std::string::npos) << bodies.contact_message();
   }
-  ASSERT_EQ(bodies.place(0.1, 0.1), 0);
-  EXPECT_EQ(bodies.touching(), "");
+  ASSERT_EQ(bodies.find_faces(0.1, 0.1), 0);
+  EXPECT_EQ(bodies.contact_message(), "");
 }
 
 }  // namespace
