@@ -196,7 +196,7 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
       const SurfaceCells::Cell &cell = cells.all()[c];
       if (!cell.owned) continue;
       area += cell.delta * std::pow(h, dim);
-      if (c >= cells.nearest()) continue;
+      if (c >= cells.nearest_count()) continue;
       const Real3 x = ball.from_centre(cell);
       const double r = std::hypot(x[0], x[1], x[2]);
       ++near;
@@ -222,7 +222,7 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
       const auto [a, b, at] = components[f];
       return (a == b) - cell.normal[a] * cell.normal[b];
     };
-    for (std::size_t c = 0; c < cells.nearest(); ++c)
+    for (std::size_t c = 0; c < cells.nearest_count(); ++c)
       for (int f = 0; f < tensor.count(); ++f) tensor[f].origin[cells.all()[c].at] = tangential(cells.all()[c], f);
     ASSERT_EQ(cells.extend(ball.phases[0], tensor), 0);
     std::map<std::ptrdiff_t, int> known;
@@ -231,7 +231,7 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
       for (int f = 0; f < tensor.count() && cell.owned && cell.delta > 0; ++f)  // beyond there is no normal
         EXPECT_NEAR(tensor[f].origin[cell.at], tangential(cell, f), 1e-12);
     }
-    for (std::size_t c = 0; c < cells.nearest(); ++c)
+    for (std::size_t c = 0; c < cells.nearest_count(); ++c)
       for (int d = 0; d < dim; ++d)
         for (int n = -3; n <= 3; ++n) {
           const SurfaceCells::Cell &cell = cells.all()[c];
