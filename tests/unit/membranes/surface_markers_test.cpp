@@ -1,4 +1,4 @@
-// Markers of membranes: the strain they tell, where they go, and who keeps them.
+// Markers of membranes: the strain they determine, their motion, and the ranks that own them.
 #include "membranes/surface_markers.hpp"
 #include "kernels/surface_fit.hpp"
 #include "membranes/membrane_tensor.hpp"
@@ -13,7 +13,7 @@ using namespace eulastic::test;
 
 namespace {
 
-// A ball in a periodic box, across its sides, whose membrane is at rest.
+// A ball in a periodic box, across its boundaries, with an undeformed membrane.
 struct MarkedBall : InterfaceScene {
   static constexpr int cells = 24;
   static constexpr double radius = 0.3;
@@ -61,8 +61,8 @@ struct MarkedBall : InterfaceScene {
   }
 };
 
-// The places at rest moved as x = F X: then B_s = F P_0 F^T, s times it where it was stretched by that before. The body
-// lies across the box: places differ by less than half of it.
+// Undeformed positions are moved as x = F X, so that B_s = F P_0 F^T, times s if the membrane was stretched before. The
+// body crosses the boundaries of the box: positions differ by less than half of it.
 template <int Dim>
 void tells_the_strain(double stretch) {
   MarkedBall ball(Dim);

@@ -1,4 +1,4 @@
-// Where rigid bodies cut the faces of the velocity.
+// The faces of the velocity that rigid bodies contain or cut.
 #include "rigid/rigid_surfaces.hpp"
 #include "support/rigid_scene.hpp"
 
@@ -28,8 +28,8 @@ std::unique_ptr<RigidFaces> faces_of(Scene *scene, const GridSpec &grid, Species
   return std::make_unique<RigidFaces>(bodies.faces());
 }
 
-// Every link that ends at the surface of a ball across two periodic sides ends on it; every face inside is in a run, no
-// other; and no cut face is stiffer than a regular one.
+// For a ball across two periodic boundaries, every link that ends at the surface ends on it, runs contain exactly the
+// faces inside, and no cut face is stiffer than a regular one.
 TEST(RigidFaces, LinksEndAtTheSurface) {
   Scene scene;
   GridSpec spec;
@@ -85,7 +85,7 @@ TEST(RigidFaces, LinksEndAtTheSurface) {
   EXPECT_GT(links, 300);
 }
 
-// Of a body from a file the surface is where phi, interpolated, is 1/2: exact of a plane along the grid.
+// The surface of a body from a file is where interpolated phi is 1/2, which is exact for a plane along the grid.
 TEST(RigidFaces, SurfaceOfAFile) {
   Scene scene;
   GridSpec spec;
@@ -107,7 +107,7 @@ TEST(RigidFaces, SurfaceOfAFile) {
   EXPECT_TRUE(found);
 }
 
-// In a box of fluid that goes with it, across all sides: nothing happens.
+// A body that moves with the fluid around it, across all boundaries of the box, has no load and disturbs nothing.
 TEST(TravellingBodies, FluidThatGoesAlongFeelsNothing) {
   Scene scene;
   GridSpec spec;
@@ -137,7 +137,7 @@ TEST(TravellingBodies, FluidThatGoesAlongFeelsNothing) {
   }
 }
 
-// Where a body is follows from the time alone, whatever was before; phi, too.
+// The position of a body depends on the time alone, not on earlier calls; the same holds for phi.
 TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
   Scene scene;
   GridSpec spec;
@@ -190,7 +190,7 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
   EXPECT_NEAR(moment / sum, 0.3 + 0.8 * way, 1e-4);
 }
 
-// Two bodies of which one comes to the other.
+// Two bodies, one of which approaches the other.
 TEST(TravellingBodies, TouchingIsFound) {
   Scene scene;
   GridSpec spec;
