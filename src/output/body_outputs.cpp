@@ -82,7 +82,7 @@ std::string Outputs::strain_warning() {
     std::snprintf(
         text, sizeof text,
         "t = %.9g: the area of red cell %d has grown by %.2g %%, above the %g %% at which its membrane bursts; a "
-        "weaker flow, or a larger -NAME_area_modulus",
+        "weaker flow, or a larger -NAME_skalak_c",
         m.time, m.red_cell_area.label, 100 * m.red_cell_area.value, 100 * red_cell_bursts);
     return text;
   }

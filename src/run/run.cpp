@@ -225,7 +225,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
   PetscFunctionReturn(0);
 }
 
-// -balance, of what has been set up: on another grid, if that is better, all of it is set up once more.
+// -load_balance, of what has been set up: on another grid, if that is better, all of it is set up once more.
 PetscErrorCode balance(const std::string &restarted_from, Domain *domain, Run *run, std::string *line,
                        std::string *refusal) {
   PetscFunctionBeginUser;

@@ -80,7 +80,8 @@ std::string check_adhesion(const Config &config) {
   for (const AdhesionPair &pair : config.adhesion.pairs)
     if (const std::string wrong = check_pair(config, pair); !wrong.empty()) return wrong;
   if (!config.adhesion.pairs.empty() && has_feeders(config.sides))
-    return "-adhesion: bodies that an inlet generator lets in have no receptors; accepted: without -inflow_..._feeder";
+    return "-adhesion: bodies that an inlet generator lets in have no receptors; accepted: without "
+           "-boundary_..._generator_length";
   return {};
 }
 

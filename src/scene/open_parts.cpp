@@ -203,9 +203,9 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
   if (!inlet.empty())
     return "-boundary_" + inlet + ": inflow, but rigid bodies cover what would come in; accepted: a side that is open";
   if (outlet.empty() && !covered.empty())
-    return "-inflow_" + covered +
+    return "-boundary_" + covered +
            "_velocity: rigid bodies cover a part of the side, and what comes in elsewhere must balance it, as no side "
-           "is open; accepted: -inflow_" +
+           "is open; accepted: -boundary_" +
            covered + "_flow_rate";
   bool comes_in = false;
   for_crossed_sides(config, [&](int d, int high) { comes_in |= config.sides[d][high].kind == SideKind::inflow; });

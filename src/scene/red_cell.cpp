@@ -9,8 +9,8 @@ namespace eulastic {
 
 const std::vector<std::pair<std::string, std::string>> &red_cell_preset() {
   static const std::vector<std::pair<std::string, std::string>> preset{
-      {"shape", "biconcave"}, {"membrane", "skalak"},        {"surface_shear_modulus", "0.0053"},
-      {"area_modulus", "20"}, {"bending_modulus", "0.0002"}, {"viscosity", "6"}};
+      {"shape", "biconcave"}, {"membrane_law", "skalak"},    {"surface_shear_modulus", "0.0053"},
+      {"skalak_c", "20"},     {"bending_modulus", "0.0002"}, {"viscosity", "6"}};
   return preset;
 }
 

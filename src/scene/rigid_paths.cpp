@@ -134,8 +134,9 @@ std::string check_paths(const Config &config) {
                                ": a body that travels through the grid, or turns there, ";
     if (!config.method.staggered()) return option + "needs -method fast; accepted here: along itself, or 0,0,0";
     if (config.method.acm_of_the_paper())
-      return option + "needs an increment of the pressure; accepted here: -acm_sweeps_max > 1, or along itself";
-    if (has_feeders(config.sides)) return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
+      return option + "needs an increment of the pressure; accepted here: -acm_iterations_max > 1, or along itself";
+    if (has_feeders(config.sides))
+      return option + "does not go with a feeder; accepted: without -boundary_SIDE_generator_length";
     if (spec.shape == Shape::voxels) continue;
     const Surface surface(spec, dimension);
     for (const BodyPlace &place : config.places[s].known)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""-balance: other cuts between ranks, by what bodies cost and where they are; the same bits.
+"""-load_balance: other cuts between ranks, by what bodies cost and where they are; the same bits.
 
 Needs EULASTIC=path of the binary and EULASTIC_MPIEXEC.
 """
@@ -23,7 +23,7 @@ LINE = re.compile(r"^balance: (the even split stays, )?heaviest rank (\S+) (->|o
 class Balance(Restart):
     def line(self, *arguments, ranks=0):
         """(before, whether ranks are cut anew, after) of a run in the directory `run`."""
-        result = self.call(*arguments, "-balance", "-output_dir", "run", "-output_overwrite", ranks=ranks)
+        result = self.call(*arguments, "-load_balance", "-output_dir", "run", "-output_overwrite", ranks=ranks)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(result.stdout.count("balance: "), 1)
         even, before, _, after, _, self.rest = LINE.search(result.stdout).groups()
@@ -83,15 +83,15 @@ class Balance(Restart):
         for cells in "12,24,20", "12,25,19":
             for ranks in (2, 3, 4):
                 self.assertFalse(self.line(*BOX, *FLOW, "-grid_cells", cells, "-time_steps_max", 1, ranks=ranks)[1])
-        result = self.call(*CORNER, *FLOW, "-time_steps_max", 1, "-balance", "-output_dir", "one")
+        result = self.call(*CORNER, *FLOW, "-time_steps_max", 1, "-load_balance", "-output_dir", "one")
         self.assertIn("\nbalance: one rank has all cells\n", result.stdout)
 
     def test_check_only_speaks_of_equal_parts(self):
         case = [*CORNER, *FLOW, "-check_only"]
-        result = self.call(*case, "-balance", "-ranks", 4)
+        result = self.call(*case, "-load_balance", "-ranks", 4)
         self.assertEqual((result.returncode, result.stdout), (2, ""))
-        self.assertRegex(result.stderr, r"^eulastic: error: -balance: .*; accepted: -balance false with it\n$")
-        for more in (["-balance"], ["-ranks", 4]):
+        self.assertRegex(result.stderr, r"^eulastic: error: -load_balance: .*; accepted: -load_balance false with it\n$")
+        for more in (["-load_balance"], ["-ranks", 4]):
             self.assertEqual(self.call(*case, *more).returncode, 0)
 
     def test_too_large_a_box(self):

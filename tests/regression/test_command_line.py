@@ -65,8 +65,8 @@ class CommandLine(unittest.TestCase):
                 ("word another", ["another"]),
                 ("-cell_radius", ["-cell_radius"]),
                 ("-cell_colour red", ["-cell_colour"]),
-                ("-wall_ymin_velocity 0,1,0", ["-wall_ymin_velocity", "normal"]),
-                ("-wall_xmin_velocity 0,1,0", ["-wall_xmin_velocity", "-boundary_x wall"]),
+                ("-boundary_ymin_velocity 0,1,0", ["-boundary_ymin_velocity", "normal"]),
+                ("-boundary_xmin_velocity 0,1,0", ["-boundary_xmin_velocity", "-boundary_x wall"]),
                 ("-cell_placement list -cell_positions no.csv", ["-cell_positions", "no.csv"]),
                 ("-da_processors_y 3", ["rank"])]:
             with self.subTest(added):
@@ -221,7 +221,7 @@ class CommandLine(unittest.TestCase):
                 said = [line for line in (done.stdout + done.stderr).splitlines() if text in line]
                 self.assertEqual(len(said), spacing is not None, done.stdout + done.stderr)
                 self.assertTrue(spacing is None or f"a spacing of at most {spacing}" in said[0], said)
-        free = self.run_program(*scene, "260", "-a_attached", "false", "-check_only")
+        free = self.run_program(*scene, "260", "-a_anchored", "false", "-check_only")
         self.assertNotIn(text, free.stdout)
 
     def test_how_threads_wait(self):

@@ -35,7 +35,7 @@ class Guards(Restart):
         return lines[0]
 
     def test_divergence(self):
-        one_sweep = [*FLAT, "-acm_sweeps_max", "1", "-acm_memory", "0", "-acm_coarse", "false"]
+        one_sweep = [*FLAT, "-acm_iterations_max", "1", "-acm_search_directions", "0", "-acm_coarse", "false"]
         bound = ["-guard_divergence", "1e-4"]
         line = self.stopped(*one_sweep, *bound, *OFTEN, says=["rms(div v)", "-guard_divergence 0.0001", "-acm_sweeps"])
         self.assertEqual(self.stopped(*one_sweep, *bound, *OFTEN, ranks=2, says=[]), line)  # the same on any ranks

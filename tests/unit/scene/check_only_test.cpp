@@ -75,11 +75,11 @@ TEST(CheckOnly, FlowThroughOpenSides) {
     EXPECT_EQ(result.error, "");
     return check_report(result.config, 1);
   };
-  const std::string fed = says("-boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity .5");
+  const std::string fed = says("-boundary_xmin inflow -boundary_xmax outflow -boundary_xmin_velocity .5");
   for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 2\n"})
     EXPECT_NE(fed.find(line), std::string::npos) << line << fed;
   // f = 8/4, U = f H^2/(8 nu), shear rate f H/(2 nu).
-  const std::string pushed = says("-boundary_xmin pressure -boundary_xmax pressure -pressure_xmin_value 8");
+  const std::string pushed = says("-boundary_xmin pressure -boundary_xmax pressure -boundary_xmin_pressure 8");
   for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 2\n"})
     EXPECT_NE(pushed.find(line), std::string::npos) << line << pushed;
 }
@@ -109,7 +109,7 @@ TEST(CheckOnly, WarnsOfBodiesThatMergeWhereTheInterfaceIsSharp) {
 // length.
 TEST(CheckOnly, LumensOfSides) {
   const auto says = [](const std::string &options) {
-    const ParseResult result = parse_line("-time_end 1 -boundary_xmin inflow -inflow_xmin_velocity .3 " + options);
+    const ParseResult result = parse_line("-time_end 1 -boundary_xmin inflow -boundary_xmin_velocity .3 " + options);
     EXPECT_EQ(result.error, "");
     std::string text = check_report(result.config, 1);
     for (const std::string &warning : scene_warnings(result.config)) text += warning + "\n";
@@ -131,7 +131,7 @@ TEST(CheckOnly, LumensOfSides) {
   EXPECT_EQ(tube.find("boundary_x"), std::string::npos) << tube;
   const std::string two = says(
       "-grid_cells 16,16,1 -boundary_y wall -boundary_xmax pressure -species v -v_shape slab -v_axis y -v_interval "
-      ".2,.5 -v_law rigid -fluid_viscosity 1e-5 -inflow_xmin_frequency 1");
+      ".2,.5 -v_law rigid -fluid_viscosity 1e-5 -boundary_xmin_angular_frequency 1");
   has(two,
       "\nside xmin: inflow, open length 0.7 of 1, 2 lumens, the widest 0.5 wide, 3.2 cells across the narrowest; mean "
       "velocity up to 0.3, flow rate up to 0.21 into the box, Reynolds number of the lumen up to 1.5e+04\n");
@@ -156,7 +156,7 @@ TEST(CheckOnly, LumensOfSides) {
 
 TEST(CheckOnly, WhatCannotFlowIsRefused) {
   const std::string box = "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax outflow ",
-                    slab = "-species v -v_shape slab -v_law rigid ", flow = "-inflow_xmin_velocity 1 ";
+                    slab = "-species v -v_shape slab -v_law rigid ", flow = "-boundary_xmin_velocity 1 ";
   const auto refused = [](const std::string &options, const std::string &start) {
     for (const char *check : {"", " -check_only"})
       EXPECT_EQ(parse_line(options + check).error.rfind(start, 0), 0u) << options << parse_line(options).error;
@@ -168,14 +168,14 @@ TEST(CheckOnly, WhatCannotFlowIsRefused) {
   refused(box + flow + slab + "-v_axis y -v_interval 0,1",
           "-v_interval: the rigid slab fills all of the box and leaves no fluid; accepted: a part of 0,1");
   refused(
-      "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax inflow -inflow_xmin_velocity 1 "
-      "-inflow_xmax_velocity -1 " +
+      "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax inflow -boundary_xmin_velocity 1 "
+      "-boundary_xmax_velocity -1 " +
           slab + "-v_axis y -v_interval 0,.2",
-      "-inflow_xmin_velocity: rigid bodies cover a part of the side, and ");
+      "-boundary_xmin_velocity: rigid bodies cover a part of the side, and ");
   std::string numbers;  // where the profile is not 0 the side is closed
   for (int cell = 0; cell < 16; ++cell) numbers += cell < 4 ? "1\n" : "0\n";
   const TemporaryFile profile(numbers);
-  refused(box + "-inflow_xmin_profile " + profile.path() + " " + slab + "-v_axis y -v_interval 0,.5",
+  refused(box + "-boundary_xmin_profile " + profile.path() + " " + slab + "-v_axis y -v_interval 0,.5",
           "-boundary_xmin: inflow, but rigid bodies cover");
 }
 
