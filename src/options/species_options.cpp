@@ -51,25 +51,8 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
   for_shapes(rows.rows.size() - voxels, {Shape::voxels});
 }
 
-void add_law(Rows &rows, SpeciesSpec &spec) {
-  const auto for_law = [&](std::size_t count, std::vector<Law> wanted) {
-    rows.restrict(rows.rows.size() - count, rows.prefix + "law", spec.law, law_names, std::move(wanted));
-  };
-  rows.choice(
-      "law", spec.law, law_names,
-      "constitutive law; neo_hookean: the deviator of G B; mooney_rivlin: that of 2 c1 B + 2 c2 (tr(B) B - B.B) + "
-      "4 c3 (tr B - 3) B; membrane: an elastic membrane around a fluid; red_cell: a membrane with the parameters of a "
-      "red blood cell in um, us and mPa s, -NAME_shape biconcave and -NAME_viscosity 6, which their options override");
-  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure",
-            "shear modulus G; 0: a fluid, which is tracked")
-      .required = true;
-  for_law(1, {Law::neo_hookean});
-  rows.real("c1", spec.c1, not_negative, "pressure", "first coefficient; the shear modulus at rest is 2 (c1 + c2)")
-      .required = true;
-  rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
-  rows.real("c3", spec.c3, not_negative, "pressure",
-            "third coefficient, which stiffens the body with the square of the strain");
-  for_law(3, {Law::mooney_rivlin});
+void add_membrane(Rows &rows, SpeciesSpec &spec) {
+  const std::size_t first = rows.rows.size();
   rows.choice("membrane_law", spec.membrane.law, membrane_names, "law of a membrane around a fluid");
   rows.choice(
       "membrane_scheme", spec.membrane.scheme, membrane_scheme_names,
@@ -93,10 +76,32 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
   rows.real("stretch_volume_fraction", spec.stretch_force.volume, {0, true, 0.5}, "",
             "share of the volume at each end on which -NAME_stretch_force acts; for a red cell the default is the "
             "outer half um");
-  for_law(9, {Law::membrane, Law::red_cell});
+  rows.restrict(first, rows.prefix + "law", spec.law, law_names, {Law::membrane, Law::red_cell});
   Option &area_modulus = rows.rows[modulus];
   area_modulus.only_with = "-" + rows.prefix + "membrane_law skalak";
   area_modulus.applies = [&spec] { return spec.is_membrane() && spec.membrane.law == kernels::MembraneLaw::skalak; };
+}
+
+void add_law(Rows &rows, SpeciesSpec &spec) {
+  const auto for_law = [&](std::size_t count, std::vector<Law> wanted) {
+    rows.restrict(rows.rows.size() - count, rows.prefix + "law", spec.law, law_names, std::move(wanted));
+  };
+  rows.choice(
+      "law", spec.law, law_names,
+      "constitutive law; neo_hookean: the deviator of G B; mooney_rivlin: that of 2 c1 B + 2 c2 (tr(B) B - B.B) + "
+      "4 c3 (tr B - 3) B; membrane: an elastic membrane around a fluid; red_cell: a membrane with the parameters of a "
+      "red blood cell in um, us and mPa s, -NAME_shape biconcave and -NAME_viscosity 6, which their options override");
+  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure",
+            "shear modulus G; 0: a fluid, which is tracked")
+      .required = true;
+  for_law(1, {Law::neo_hookean});
+  rows.real("c1", spec.c1, not_negative, "pressure", "first coefficient; the shear modulus at rest is 2 (c1 + c2)")
+      .required = true;
+  rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
+  rows.real("c3", spec.c3, not_negative, "pressure",
+            "third coefficient, which stiffens the body with the square of the strain");
+  for_law(3, {Law::mooney_rivlin});
+  add_membrane(rows, spec);
   const std::size_t first = rows.rows.size();
   rows.real("velocity", spec.motion.velocity, any_number, "length/time",
             "velocity V cos(angular_frequency t + phase) of a rigid body, which moves through the grid (a slab along "
