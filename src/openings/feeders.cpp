@@ -66,7 +66,7 @@ PetscErrorCode Feeders::check_lumen() const {
     if (change[s] > same)
       flow_.crowded =
           std::string("-boundary_") + "xyz"[stretches_[s].d] + (stretches_[s].high ? "max" : "min") +
-          "_generator_length: rigid bodies change along it; accepted: a stretch along which the lumen is the same";
+          "_generator_length: the lumen changes along the inlet generator; accepted: a stretch with a constant lumen";
   PetscFunctionReturn(0);
 }
 

@@ -73,7 +73,7 @@ std::string unknown_option(const std::string &name, const std::vector<Option> &t
   if (nearest && least <= 2) return start + "; nearest known: -" + nearest->name + " (" + nearest->accepted + ")" + end;
   if (const std::string why = not_supported(plain); !why.empty()) return start + ": " + why;
   if (const std::string species = missing_species(name); !species.empty())
-    return start + ": -species names no " + species + end;
+    return start + ": -species does not list " + species + end;
   for (const std::string &petsc : petsc_option_names())
     if (petsc.back() != '_' && edit_distance(plain, petsc) <= 2) return start + "; nearest known: -" + petsc + end;
   if (nearest) return start + "; nearest known: -" + nearest->name + " (" + nearest->accepted + ")" + end;

@@ -94,7 +94,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   auto find = place_of_speed;
   if (beyond(m.energy_made, control_.energy_growth)) {
     what = text(
-        "the run has made energy of its own, %.3g of what it held and was supplied with meanwhile, above "
+        "the numerics have generated energy, %.3g of what the run held and was supplied with meanwhile, above "
         "-guard_energy_growth %g; lower -time_step (%.3g now), more -grid_cells, or -series_interval if rows are far "
         "apart",
         m.energy_made, control_.energy_growth, state.dt);

@@ -123,9 +123,9 @@ PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, dou
 std::string shorter_end(const Config &config, double held) {
   if (config.time.end >= held * (1 - 1e-12)) return {};
   char times[100];
-  std::snprintf(times, sizeof times, "-time_end: %.9g is before t = %.9g, to which the run in ", config.time.end, held);
+  std::snprintf(times, sizeof times, "-time_end: %.9g is before t = %.9g, which the run in ", config.time.end, held);
   return times + config.output.directory +
-         " has come; accepted: a later end, another -output_dir, or -output_overwrite to lose what comes after";
+         " has reached; accepted: a later end, another -output_dir, or -output_overwrite to discard what comes after";
 }
 
 std::string changed_option(const std::string &before, const ParseResult &now) {

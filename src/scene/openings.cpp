@@ -62,8 +62,8 @@ std::string read_profile(const Config &config, int d, int high, SideProfile *pro
   if (!wrong.empty()) return wrong;
   const std::size_t cells = cells_of_side(config, d);
   if (profile->size() != cells)
-    return spec.profile + " has " + std::to_string(profile->size()) + " numbers; accepted: one per cell of the side, " +
-           std::to_string(cells);
+    return spec.profile + " has " + std::to_string(profile->size()) +
+           " numbers; accepted: one per cell of the boundary, " + std::to_string(cells);
   *mean = make_mean_one(profile);
   if (!std::isfinite(1 / *mean)) return spec.profile + ": its mean is 0; accepted: a flow into the box";
   return {};
@@ -100,7 +100,7 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   if (!text.empty())
     if (std::string wrong = read_course(text, &course); !wrong.empty()) return option + ": " + wrong;
   if (!course.table.empty() && (spec.frequency != 0 || spec.phase != 0))
-    return name + "_angular_frequency: has no meaning beside a table; accepted: 0, and phase 0";
+    return name + "_angular_frequency: does not apply to a table; accepted: 0, and phase 0";
   if (std::string wrong = extend_table(spec, name, option, text, config.time.end, &course); !wrong.empty())
     return wrong;
   if (flow) {
@@ -124,7 +124,7 @@ std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
     return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: a whole number, such as " +
            to_text(cells * h);
   if (!config.species.empty() && !config.body_series)
-    return name + "bodies that come in need names; accepted: -body_series true";
+    return name + "bodies that enter must be labelled; accepted: -body_series true";
   side->feeder = static_cast<int>(cells);
   return {};
 }
@@ -135,8 +135,8 @@ std::string resolve_load(const OpeningSpec &spec, const std::string &name, Outle
   const bool holds = capacity > 0 && second > 0;
   if (!holds && spec.windkessel_start != 0)
     return name +
-           "_windkessel_initial_pressure: there is no capacity that a resistance drains; accepted: 0, or with both "
-           "in " +
+           "_windkessel_initial_pressure: the Windkessel has no capacitance with a parallel resistance; accepted: 0, "
+           "or both in " +
            name + "_windkessel";
   if (spec.resistance > 0 && spec.windkessel != Real3{})
     return name + "_resistance: given beside " + name + "_windkessel; accepted: one of them";
@@ -358,7 +358,7 @@ PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const 
       for (std::size_t cell = 0; cell < profile.size(); ++cell) sum += profile[cell] *= open.open(cell);
       if (!(std::fabs(sum) > 0)) {
         *wrong = std::string("-boundary_") + "xyz"[d] + (high ? "max" : "min") +
-                 ": inflow, but rigid bodies cover what would come in; accepted: a side that is open";
+                 ": rigid bodies cover all of this inflow boundary; accepted: a boundary that is partly open";
         PetscFunctionReturn(0);
       }
       // A flow rate is that of the whole side, a velocity the mean over its open part.

@@ -58,8 +58,7 @@ std::string extend_table(const OpeningSpec &spec, const std::string &side, const
                          const std::string &file, double end, TimeCourse *course) {
   if (course->table.empty()) {
     if (spec.period == 0 && !spec.hold) return {};
-    return side + (spec.hold ? "_table_hold" : "_table_period") +
-           ": has no meaning without a table; accepted: beside a table";
+    return side + (spec.hold ? "_table_hold" : "_table_period") + ": applies only to a table; accepted: with a table";
   }
   if (spec.hold && spec.period > 0)
     return side + "_table_hold: given beside " + side + "_table_period; accepted: one of them";

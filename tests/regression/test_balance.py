@@ -16,7 +16,7 @@ FLOW = "-body_force .3,0,0 -initial_velocity_mean .2,0,.4 -time_end 100".split()
 CORNER = [*BOX, *("-grid_cells 12,24,20 "
                   "-species cell,bead -cell_shape sphere -cell_radius .6 -cell_centre 1.5,1,1 -cell_shear_modulus 1 "
                   "-bead_shape sphere -bead_radius .5 -bead_centre .5,2.1,1.2 -bead_shear_modulus .5").split()]
-LINE = re.compile(r"^balance: (the even split stays, )?heaviest rank (\S+) (->|of the mean, at best) (\S+) "
+LINE = re.compile(r"^balance: (the even split is kept, )?heaviest rank (\S+) (->|of the mean, at best) (\S+) "
                   r"(of the mean )?\(estimate\)(.*)$", re.M)
 
 
@@ -90,7 +90,7 @@ class Balance(Restart):
         case = [*CORNER, *FLOW, "-check_only"]
         result = self.call(*case, "-load_balance", "-ranks", 4)
         self.assertEqual((result.returncode, result.stdout), (2, ""))
-        self.assertRegex(result.stderr, r"^eulastic: error: -load_balance: .*; accepted: -load_balance false with it\n$")
+        self.assertRegex(result.stderr, r"^eulastic: error: -load_balance: .*; accepted: -load_balance false with -check_only\n$")
         for more in (["-load_balance"], ["-ranks", 4]):
             self.assertEqual(self.call(*case, *more).returncode, 0)
 
@@ -102,7 +102,7 @@ class Balance(Restart):
         self.assertTrue(self.line(*case, ranks=2)[1])
         self.assertEqual(self.rest, "")
         self.line(*case, "-guard_memory", 1.01 * needed / limit, ranks=2)
-        self.assertRegex(self.rest, "^; the even split stays: -grid_cells: the fields need about")
+        self.assertRegex(self.rest, "^; the even split is kept: -grid_cells: the fields need about")
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ class Guards(Restart):
         self.assertEqual(self.summary("run")["steps"], 0)
 
     def test_energy(self):
-        says = ["the run has made energy of its own", "-guard_energy_growth 0.3"]
+        says = ["the numerics have generated energy", "-guard_energy_growth 0.3"]
         case = [*FREE, "-time_step", ".03", *NONE[:-2]]
         for force in ("0,0,0", "1e-9,0,0"):  # driven or not
             self.stopped(*case, "-body_force", force, says=says)

@@ -126,7 +126,7 @@ class AnyName(Kept):
                 self.assertIn("goes on from its checkpoint", longer.stdout, longer.stderr)
                 self.assertEqual(self.summary(name)["time"], .1)
                 line = longer.stdout.strip().splitlines()[-1]
-                again = subprocess.run(["bash", "-c", re.search("longer: (.*) -time_end", line)[1] + " -time_end .12"], cwd=self.room,
+                again = subprocess.run(["bash", "-c", re.search("to continue: (.*) -time_end", line)[1] + " -time_end .12"], cwd=self.room,
                                        env=self.environment, capture_output=True, text=True, timeout=120)
                 self.assertEqual((again.returncode, again.stderr), (0, ""))
                 self.assertEqual(self.summary(name)["time"], .12)

@@ -71,10 +71,10 @@ class Tables(WithRoom):
 
     def test_periods_that_are_refused(self):
         for text, options, says in (
-                ("# period: .15\n", "", 'beat.csv line 1: "period: .15" names no number > 0; accepted: one line # period T'),
+                ("# period: .15\n", "", 'beat.csv line 1: "period: .15" gives no number > 0; accepted: one line # period T'),
                 ("# period of the heart\n", "", "-boundary_xmin_velocity: beat.csv line 1: "),
                 ("# period 0\n", "", "beat.csv line 1: "), ("# period nan\n", "", "beat.csv line 1: "),
-                ("# period .15\n#period .15\n", "", 'beat.csv line 2: "period .15" comes a second time'),
+                ("# period .15\n#period .15\n", "", 'beat.csv line 2: "period .15" is repeated'),
                 ("# period .1\n", "", "-boundary_xmin_velocity: the period of beat.csv: 0.1 is shorter than the table"),
                 ("# period .15\n", "-boundary_xmin_table_period .2", '-boundary_xmin_table_period: 0.2, but beat.csv says "# period 0.15"'),
                 ("# period .15\n", "-boundary_xmin_table_hold", '-boundary_xmin_table_hold: beat.csv says "# period 0.15"')):

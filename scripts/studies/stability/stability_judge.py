@@ -98,7 +98,7 @@ def judge(directory, method):
     if membranes:
         m["energy"] = max(m["energy"], 1 + surface_energy_made(run) - MADE)
     verdict = next(v for v in summary["verdicts"] if v["of"] == "energy")
-    m["made"] = verdict["verdict"] == "do not trust" and "made energy" in verdict["why"]
+    m["made"] = verdict["verdict"] == "do not trust" and "generated energy" in verdict["why"]
     m["forgotten"] = summary["strain_forgotten"]
     m["divergence"] = float(series.divergence_rms.max())
     m["volume"] = float(abs(series.solid_volume / series.solid_volume[0] - 1).max()) if series.solid_volume[0] > 0 else 0.0

@@ -228,9 +228,9 @@ TEST(Options, WhatHasLostItsMeaningIsDropped) {
   ASSERT_EQ(result.warnings.size(), 2U);
   EXPECT_EQ(result.warnings[0],
             "-boundary_ymax_velocity (" + file.path() +
-                ":5): dropped, as it has a meaning only with -boundary_ymax wall or inflow, or -boundary_y wall");
+                ":5): dropped, as it applies only with -boundary_ymax wall or inflow, or -boundary_y wall");
   EXPECT_EQ(result.warnings[1],
-            "-pressure_ksp_rtol (" + file.path() + ":3): dropped, as it has a meaning only with -pressure_solver ksp");
+            "-pressure_ksp_rtol (" + file.path() + ":3): dropped, as it applies only with -pressure_solver ksp");
   EXPECT_EQ(result.config.sides[1][1].motion.velocity, Real3{});
   EXPECT_EQ(result.petsc_arguments, (Words{"-skip_petscrc"}));
   EXPECT_NE(parse({file.path(), "-pressure_solver", "acm", "-pressure_ksp_rtol", "1"}).error, "");

@@ -94,15 +94,14 @@ TEST(CheckOnly, WarnsOfBodiesThatMergeWhereTheInterfaceIsSharp) {
     for (const std::string &warning : scene_warnings(result.config)) text += warning + "\n";
     return text;
   };
-  const std::string merging =
-      "bodies of cell merge where they meet: boxes of their own, in which they stay separate, need ";
+  const std::string merging = "bodies of cell merge where they touch: to stay separate they need ";
   EXPECT_NE(warnings("-cell_shape cylinder -cell_count 2,1,1").find(merging + "-cell_shape sphere"), std::string::npos);
   for (const std::string &fine :
        {std::string("-cell_shape cylinder -cell_count 2,1,1 -cell_contact merge"),
         std::string("-cell_shape sphere -interface_scheme weno5 -cell_count 2,1,1"),
         std::string("-cell_shape sphere -method classic -cell_count 2,1,1"),
         std::string("-cell_shape sphere -cell_count 2,1,1"), std::string("-cell_shape cylinder -cell_count 1,1,1")})
-    EXPECT_EQ(warnings(fine).find("merge where they meet"), std::string::npos) << fine;
+    EXPECT_EQ(warnings(fine).find("merge where they touch"), std::string::npos) << fine;
 }
 
 // A tube of diameter 1.6: pi .64 = 2.0106 of 5.76, .3 of it, .3 1.6/1. Two channels of .5 and .2 at 16 cells per
@@ -162,9 +161,9 @@ TEST(CheckOnly, WhatCannotFlowIsRefused) {
       EXPECT_EQ(parse_line(options + check).error.rfind(start, 0), 0u) << options << parse_line(options).error;
   };
   refused(box + flow + slab + "-v_axis x -v_interval 0,.2",
-          "-boundary_xmin: inflow, but rigid bodies cover what would come in; accepted: ");
+          "-boundary_xmin: rigid bodies cover all of this inflow boundary; accepted: ");
   refused(box + flow + slab + "-v_axis x -v_interval .8,1",
-          "-boundary_xmax: rigid bodies cover all sides through which");
+          "-boundary_xmax: rigid bodies cover all boundaries through which");
   refused(box + flow + slab + "-v_axis y -v_interval 0,1",
           "-v_interval: the rigid slab fills all of the box and leaves no fluid; accepted: a part of 0,1");
   refused(
