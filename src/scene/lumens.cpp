@@ -63,7 +63,7 @@ std::string side_line(const Config &config, int d, int high) {
   const OpenPart &part = config.open_parts[d][high];
   const SideKind kind = config.sides[d][high].kind;
   const char *what = kind == SideKind::inflow ? "inflow" : kind == SideKind::pressure ? "pressure" : "outflow";
-  std::string line = "side " + name_of(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
+  std::string line = "boundary " + name_of(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
                      number(part.area) + " of " + number(area_of_side(config, d));
   if (part.lumens > 1) line += ", " + std::to_string(part.lumens) + " lumens, the widest";
   if (std::isfinite(part.width))

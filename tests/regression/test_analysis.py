@@ -267,7 +267,7 @@ class FilesAsTheProgramReadsThem(WithRoom):
     def test_what_the_program_refuses(self):
         case = self.room / "case.opts"
         for text, said in (('-output_dir "open\n', "a quote is not closed"), ("-time_end 3 4\n", 'stray word "4"'),
-                           ("-options_file case.opts\n", "brings in itself")):
+                           ("-options_file case.opts\n", "includes itself")):
             case.write_text(text)
             done = subprocess.run([os.environ["EULASTIC"], case, "-print_options"], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2)

@@ -108,7 +108,7 @@ class OpenSides(SceneCase):
                                         ranks=2).summary["state_hash"])
             self.assertEqual(len(hashes), 1)
         for code, says, options in ((2, "accepted: bodies that stay further inside", (there, "2.3,.45,0")),
-                                    (3, "solid within 2 cells of side xmax", (there, ".8,.45,0", "-body_series", "false"))):
+                                    (3, "a body is within 2 cells of the open boundary xmax", (there, ".8,.45,0", "-body_series", "false"))):
             done = subprocess.run([BINARY, *scene, *box[1], *options, "-output_dir", self.room / f"refused{code}"],
                                   capture_output=True, text=True, timeout=300)
             self.assertEqual(done.returncode, code, done.stderr)
@@ -227,7 +227,7 @@ class OpenSides(SceneCase):
                           sorted(line.split("warning: ")[1] for line in (outcome.out + outcome.err).splitlines() if "warning: " in line))
         self.assertEqual(len({str(lines) for lines in said.values()}), 1, said)
         sides, warnings = said["run1"]
-        self.assertIn(f"side xmin: inflow, open area {area:.4g} of 5.76, lumen {across / 10:.4g} wide, {across} cells across; mean velocity "
+        self.assertIn(f"boundary xmin: inflow, open area {area:.4g} of 5.76, lumen {across / 10:.4g} wide, {across} cells across; mean velocity "
                       f"{.4 / area:.4g}, flow rate 0.4 into the box, Reynolds number of the lumen {.4 / area * across * 1e4:.3g}", sides)
         self.assertEqual([w.split(":")[0] for w in warnings], ["-boundary_xmax"] * 2 + ["-boundary_xmin"] * 2)
 

@@ -197,7 +197,7 @@ TEST(Options, AFileBringsInAnotherAndWins) {
   EXPECT_NE(error("-time_end 1\n-options_file " + wrong.path()).find(wrong.path() + ":1)"), std::string::npos);
   const TemporaryFile loop("");
   std::ofstream(loop.path()) << "-options_file " << loop.path() << "\n";
-  EXPECT_NE(parse({loop.path()}).error.find("brings in itself"), std::string::npos);
+  EXPECT_NE(parse({loop.path()}).error.find("includes itself"), std::string::npos);
 }
 
 TEST(Options, AQuotedWordReadsBackTheSame) {

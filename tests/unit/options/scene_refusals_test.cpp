@@ -113,11 +113,11 @@ TEST(SceneRefusals, RigidBodiesThatMove) {
        {"-a_shape ellipsoid -a_semi_axes .1,.2,.4 -a_angular_velocity 0,1,0 -boundary_x wall",
         {"-a_angular_velocity: rotates a body to x = 0.1", "accepted: a path between 0.25 and 0.75"}},
        {"-a_shape ellipsoid -a_semi_axes .1,.2,.1 -a_angular_velocity 0,1,0 -method classic",
-        {"-a_angular_velocity", "or turns there"}},
+        {"-a_angular_velocity", "or rotates through the grid"}},
        {"-a_shape slab -a_interval .3,.5 -a_axis y -a_velocity 0,1,0 -boundary_y wall",
         {"-a_velocity", "cannot leave"}},
        {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
-        {"-a_velocity", "sides of the box"}}},
+        {"-a_velocity", "boundaries of the box"}}},
       "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");
 }
 

@@ -52,7 +52,7 @@ TEST(CheckOnly, NumbersOfAChannel) {
     EXPECT_NE(drop.find(line), std::string::npos) << line << drop;
   EXPECT_EQ(viscous.find("capillary"), std::string::npos);
   const ParseResult forced = parse_line(scene + " -method classic -time_step 1 -check_only");
-  EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 breaks the viscous limit"), std::string::npos);
+  EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 exceeds the viscous limit"), std::string::npos);
   const ParseResult huge = parse_line("-time_end 1 -grid_cells 8192,8192,8192 -check_only");
   ASSERT_EQ(huge.error, "");
   EXPECT_EQ(check_report(huge.config, 1024).find("64-bit") != std::string::npos, sizeof(PetscInt) == 4);
@@ -121,10 +121,10 @@ TEST(CheckOnly, LumensOfSides) {
       "-grid_cells 12,48,48 -grid_length .6,2.4,2.4 -boundary_xmax outflow -species v -v_shape tube -v_axis x -v_law "
       "rigid -v_radius .8 -v_centre 0,1.25,1.15 -fluid_viscosity 1");
   has(tube,
-      "\nside xmin: inflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity 0.3, flow rate "
+      "\nboundary xmin: inflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity 0.3, flow rate "
       "0.6032 into the box, Reynolds number of the lumen 0.48\n");
   has(tube,
-      "\nside xmax: outflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity -0.3, flow rate "
+      "\nboundary xmax: outflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity -0.3, flow rate "
       "-0.6032 into the box, Reynolds number of the lumen 0.48\n");
   has(tube, "\nvelocity scale (estimate): 0.6\n");  // in the middle of a developed flow
   EXPECT_EQ(tube.find("boundary_x"), std::string::npos) << tube;
@@ -132,7 +132,7 @@ TEST(CheckOnly, LumensOfSides) {
       "-grid_cells 16,16,1 -boundary_y wall -boundary_xmax pressure -species v -v_shape slab -v_axis y -v_interval "
       ".2,.5 -v_law rigid -fluid_viscosity 1e-5 -boundary_xmin_angular_frequency 1");
   has(two,
-      "\nside xmin: inflow, open length 0.7 of 1, 2 lumens, the widest 0.5 wide, 3.2 cells across the narrowest; mean "
+      "\nboundary xmin: inflow, open length 0.7 of 1, 2 lumens, the widest 0.5 wide, 3.2 cells across the narrowest; mean "
       "velocity up to 0.3, flow rate up to 0.21 into the box, Reynolds number of the lumen up to 1.5e+04\n");
   for (const char *side : {"-boundary_xmin: ", "-boundary_xmax: "})
     for (const char *what : {"only 3.2 cells across the lumen", "Reynolds number 1.5e+04 of the lumen"})
@@ -140,13 +140,13 @@ TEST(CheckOnly, LumensOfSides) {
   // Planes of symmetry and periodic directions are no walls; where the flow leaves twice it is not known how.
   const std::string mirrored =
       says("-grid_cells 16,7,6 -boundary_ymin wall -boundary_ymax symmetry -boundary_xmax outflow");
-  has(mirrored, "\nside xmin: inflow, open area 1 of 1, lumen 2 wide, 14 cells across; mean velocity 0.3, ");
+  has(mirrored, "\nboundary xmin: inflow, open area 1 of 1, lumen 2 wide, 14 cells across; mean velocity 0.3, ");
   const std::string open = says("-grid_cells 16,8,6 -boundary_xmax outflow");
-  has(open, "\nside xmin: inflow, open area 1 of 1, no walls; mean velocity 0.3, flow rate 0.3 into the box\n");
+  has(open, "\nboundary xmin: inflow, open area 1 of 1, no walls; mean velocity 0.3, flow rate 0.3 into the box\n");
   const std::string forked =
       says("-grid_cells 16,16,1 -boundary_ymin wall -boundary_ymax pressure -boundary_xmax outflow");
   has(forked,
-      "\nside xmax: outflow, open length 1 of 1, lumen 2 wide, 32 cells across; the flow through it is unknown\n");
+      "\nboundary xmax: outflow, open length 1 of 1, lumen 2 wide, 32 cells across; the flow through it is unknown\n");
   const std::string nothing = says(
       "-grid_cells 16,16,1 -boundary_y wall -boundary_xmax outflow -species v -v_shape tube -v_axis x -v_radius .5 "
       "-v_law rigid");
@@ -170,12 +170,12 @@ TEST(CheckOnly, WhatCannotFlowIsRefused) {
       "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax inflow -boundary_xmin_velocity 1 "
       "-boundary_xmax_velocity -1 " +
           slab + "-v_axis y -v_interval 0,.2",
-      "-boundary_xmin_velocity: rigid bodies cover a part of the side, and ");
+      "-boundary_xmin_velocity: rigid bodies cover a part of this boundary, and ");
   std::string numbers;  // where the profile is not 0 the side is closed
   for (int cell = 0; cell < 16; ++cell) numbers += cell < 4 ? "1\n" : "0\n";
   const TemporaryFile profile(numbers);
   refused(box + "-boundary_xmin_profile " + profile.path() + " " + slab + "-v_axis y -v_interval 0,.5",
-          "-boundary_xmin: inflow, but rigid bodies cover");
+          "-boundary_xmin: rigid bodies cover all of this");
 }
 
 // Obstacles hold back the flow, bodies shear it: by how much does not follow from the options.
