@@ -223,7 +223,7 @@ class OpenSides(SceneCase):
         said = {}
         for name, outcome in plan.execute().items():
             self.assertEqual(outcome.code, 0, outcome.err)
-            said[name] = ([line for line in outcome.out.splitlines() if line.startswith("side ")],
+            said[name] = ([line for line in outcome.out.splitlines() if line.startswith("boundary ")],
                           sorted(line.split("warning: ")[1] for line in (outcome.out + outcome.err).splitlines() if "warning: " in line))
         self.assertEqual(len({str(lines) for lines in said.values()}), 1, said)
         sides, warnings = said["run1"]
@@ -237,7 +237,7 @@ class OpenSides(SceneCase):
                                          "-time_end 1").split(), "-output_dir", self.room / "plug"],
                               capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("-boundary_xmin: inflow, but rigid bodies cover", done.stderr)
+        self.assertIn("-boundary_xmin: rigid bodies cover all of this", done.stderr)
 
     def test_profile_from_hdf5(self):
         """As the same numbers from a text, on each side that has other directions; vectors point into the box or out of it."""
