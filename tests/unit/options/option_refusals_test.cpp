@@ -56,17 +56,17 @@ TEST(OptionRefusals, WhatThereIsNot) {
 
 // Former names are refused with the present one.
 TEST(OptionRefusals, FormerNames) {
-  expect_refusals({{"-boundary_ymax_velocity 1,0,0",
-                    {"unknown option -boundary_ymax_velocity: it is now called "
+  expect_refusals({{"-wall_ymax_velocity 1,0,0",
+                    {"unknown option -wall_ymax_velocity: it is now called "
                      "-boundary_ymax_velocity; docs/options.md lists all former names"}},
-                   {"-boundary_zmin_generator_length 3", {"it is now called -boundary_zmin_generator_length"}},
-                   {"-boundary_xmax_pressure f.csv", {"it is now called -boundary_xmax_pressure"}},
-                   {"-body_force_angular_frequency 1", {"it is now called -body_force_angular_frequency"}},
-                   {"-Cell_body_force_angular_frequency 1", {"it is now called -Cell_body_force_angular_frequency"}},
-                   {"-cell_angular_velocity_angular_frequency 1", {"called -cell_angular_velocity_angular_frequency"}},
-                   {"-cell_membrane_law skalak", {"it is now called -cell_membrane_law"}},
-                   {"-acm_search_directions 1", {"it is now called -acm_search_directions"}},
-                   {"-load_balance", {"it is now called -load_balance"}}});
+                   {"-inflow_zmin_feeder 3", {"it is now called -boundary_zmin_generator_length"}},
+                   {"-pressure_xmax_table f.csv", {"it is now called -boundary_xmax_pressure"}},
+                   {"-body_force_frequency 1", {"it is now called -body_force_angular_frequency"}},
+                   {"-Cell_body_force_frequency 1", {"it is now called -Cell_body_force_angular_frequency"}},
+                   {"-cell_angular_velocity_frequency 1", {"called -cell_angular_velocity_angular_frequency"}},
+                   {"-cell_membrane skalak", {"it is now called -cell_membrane_law"}},
+                   {"-acm_memory 1", {"it is now called -acm_search_directions"}},
+                   {"-balance", {"it is now called -load_balance"}}});
   const std::string help = help_markdown(), former = "\n## Former names\n";
   ASSERT_NE(help.find(former), std::string::npos);
   const std::string present = help.substr(0, help.find(former));
