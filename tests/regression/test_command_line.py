@@ -207,7 +207,7 @@ class CommandLine(unittest.TestCase):
             for words in ([], ["-check_only"]):
                 done = self.run_program(*scene, viscosity, *words)
                 self.assertEqual(done.returncode, 0, done.stderr)
-                said = re.findall(r"a is (\S+) times as viscous .* late by some (\d+) steps", done.stdout + done.stderr)
+                said = re.findall(r"a is (\S+) times as viscous .* lags by about (\d+) steps", done.stdout + done.stderr)
                 self.assertEqual(said, [(times, steps)] if times else [])
 
     def test_attached_bodies_too_stiff_for_the_grid_are_a_warning(self):
@@ -319,8 +319,8 @@ class CommandLine(unittest.TestCase):
             stopped = self.run_program(*case, "-time_end", "1e-2", "-output_overwrite", "-output_dir", name, "-guard_divergence",
                                        "1e-30", "-body_force", "1,0,0", "-checkpoint_interval", "1e-9", ranks=ranks)
             self.assertEqual(stopped.returncode, 3)
-            self.assertRegex(stopped.stdout.splitlines()[-1], rf"^eulastic: stopped by a guard at t = .*; results: {name}; goes "
-                             r"on from checkpoint_\d+\.h5, with what the error names: .*eulastic.* -restart ")
+            self.assertRegex(stopped.stdout.splitlines()[-1], rf"^eulastic: stopped by a guard at t = .*; results: {name}; to "
+                             r"continue from checkpoint_\d+\.h5, with the remedy of the error: .*eulastic.* -restart ")
             self.assertIn(json.loads((self.room / name / "summary.json").read_text())["checkpoint"], stopped.stdout)
         steps = self.run_program(*case, "-time_end", "1", "-time_steps_max", "4", "-checkpoint_keep", "0", "-output_dir", "s")
         self.assertRegex(steps.stdout.splitlines()[-1], "reached -time_steps_max at .*; there is no checkpoint to continue from$")

@@ -115,7 +115,7 @@ class Feeders(SceneCase):
         for says, options in (
                 ("2 is 64 cells; accepted: from 8 to 56", [*flat, "-boundary_xmin_generator_length", "2"]),
                 ("0.52 is 16.64 cells; accepted: a whole number", [*flat, "-boundary_xmin_generator_length", ".52"]),
-                ("bodies that come in need names", [*flat, "-boundary_xmin_generator_length", "1", "-body_series", "false"]),
+                ("bodies that enter must be labelled", [*flat, "-boundary_xmin_generator_length", "1", "-body_series", "false"]),
                 ("-boundary_xmin_generator_length: the lumen changes along the inlet generator", deep),
                 ("-boundary_xmax inflow", [*flat, "-boundary_xmax_generator_length", "1"])):
             done = subprocess.run([BINARY, *options, "-output_dir", self.room / "refused"], capture_output=True, text=True,

@@ -37,7 +37,7 @@ class Guards(Restart):
     def test_divergence(self):
         one_sweep = [*FLAT, "-acm_iterations_max", "1", "-acm_search_directions", "0", "-acm_coarse", "false"]
         bound = ["-guard_divergence", "1e-4"]
-        line = self.stopped(*one_sweep, *bound, *OFTEN, says=["rms(div v)", "-guard_divergence 0.0001", "-acm_sweeps"])
+        line = self.stopped(*one_sweep, *bound, *OFTEN, says=["rms(div v)", "-guard_divergence 0.0001", "-acm_iterations_max"])
         self.assertEqual(self.stopped(*one_sweep, *bound, *OFTEN, ranks=2, says=[]), line)  # the same on any ranks
 
     def test_the_last_good_checkpoint_stays(self):

@@ -99,7 +99,7 @@ class Pistons(SceneCase):
         for options, says in ((PISTON + " -boundary_x wall -boundary_y wall", "cannot leave"),
                               (PISTON + " -boundary_xmin inflow -boundary_xmin_velocity 1 -boundary_xmax pressure", "cannot leave"),
                               (PISTON.replace("-species piston", "") + other + " -boundary_y wall", "cannot leave"),
-                              (PISTON.replace(".8,1.1", "-1,1") + " " + OPEN, "two cells from the sides")):
+                              (PISTON.replace(".8,1.1", "-1,1") + " " + OPEN, "two cells from the boundaries")):
             done = subprocess.run([BINARY, *options.split(), "-piston_velocity", "1,0,0", "-time_end", ".1", "-output_dir",
                                    self.room / "refused"], capture_output=True, text=True, timeout=60)
             self.assertEqual(done.returncode, 2, done.stderr)

@@ -74,7 +74,7 @@ class Turning(SceneCase):
                               (f"{at}wide {turn}", ("-vane_voxels: ", "reaches the boundaries of the box along x")),
                               (f"{at}wide -vane_velocity 1,0,0", ("-vane_voxels: ", "reaches the boundaries of the box along x")),
                               (" ".join([*self.make_file(), "-vane_voxels_origin 0,-.2,.2", turn]),
-                               ("-vane_angular_velocity: rotates a body to y = ", "two cells from the sides")),
+                               ("-vane_angular_velocity: rotates a body to y = ", "two cells from the boundaries")),
                               (" ".join([*SHAPE, turn, "-method classic"]), ("-vane_angular_velocity: ", "-method fast")),
                               ("-vane_shape tube -vane_radius .5 -vane_axis z " + turn, ("-vane_angular_velocity: ", "accepted"))):
             done = subprocess.run([BINARY, *BOX, *options.split(), "-time_end", ".1", "-output_dir", self.room / "refused"],

@@ -307,7 +307,7 @@ class Voxels(WithRoom):
             file["a"], file["b"] = good, good
         self.refused(*RUN, *BODY, "two.h5", "-check_only", says=["several datasets", "two.h5:DATASET", "a, b"])
         whole = (self.room / self.hdf5(good)).read_bytes()
-        for part, says in ((whole[:-100], "truncated"), (b"", "empty"), (b"x" + whole[1:], "no HDF5, NRRD or STL")):
+        for part, says in ((whole[:-100], "truncated"), (b"", "empty"), (b"x" + whole[1:], "not an HDF5, NRRD or STL")):
             self.refused(*RUN, *BODY, self.write("v.h5", part), says=["v.h5", says])
 
     def test_nrrd_refusals(self):
