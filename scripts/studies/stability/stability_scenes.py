@@ -1,4 +1,4 @@
-"""The scenes of scripts/studies/stability/stability_map: short and hard. Unit density, box and speed unless a scene says otherwise.
+"""The scenes of scripts/studies/stability/stability_map: short and difficult. Density, size of the box and speed are 1 unless a scene sets them.
 
 A group is a map: its `build(x, y)` gives the options of the scene at (x, y); each is run with both methods.
 """

@@ -1,4 +1,4 @@
-"""L1 ... L3, S6: bodies that are sheared long or carried far, where errors add up. Keys are cells per radius."""
+"""L1 ... L3, S6: bodies that are sheared for a long time or carried far, so that errors accumulate. Keys are cells per radius."""
 import math
 
 import numpy

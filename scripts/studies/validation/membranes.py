@@ -1,6 +1,6 @@
-"""V3: a ring that bends back, and one that slips back along itself. V4: a capsule that is hardly deformed. V5: a capsule
-in shear flow, by a boundary-integral
-method, with what walls and images add. V6: a red cell in optical tweezers, against the experiment. V8: a capsule that a uniform flow carries. docs/method.md, section 18."""
+"""V3: a ring that relaxes by bending, and one that relaxes along its surface. V4: a capsule with small deformation. V5: a capsule in
+shear flow against a boundary-integral method, with the effect of walls and images. V6: a red cell in optical tweezers, against the
+experiment. V8: a capsule carried by a uniform flow. docs/method.md, section 18."""
 import numpy
 
 from . import ellipsoids

@@ -1,4 +1,4 @@
-"""S12: exact properties. A pair of runs, one of them changed as physics does not notice."""
+"""S12: exact properties. Pairs of runs of which one is changed in a way that must have no effect."""
 import numpy
 
 from .case import Case, Measure, every
