@@ -108,7 +108,7 @@ def sphere(capillary, deformation, angle, time, keys, quick=()):
                          whole=True),
                  Measure(f"Ca {capillary}: Taylor deformation in this box", last("taylor_deformation"), {},
                          "walls and periodic images increase D", deformation, True),
-                 Measure(what % "inclination", limit("inclination"), {"fast": .5}, "as S6", angle, whole=True)),
+                 Measure(what % "inclination", limit("inclination"), {"fast": .5}, "goal, as in S6", angle, whole=True)),
                 line, ("t", f"D, Ca = {capillary}"),
                 (Measure(what % "Taylor deformation", limit("taylor_deformation"), {"fast": .05},
                          "goal: 1 % at 16 cells per radius (S6), of second order, so 7 % at 6; less after the extrapolation",

@@ -23,7 +23,7 @@ NOTES = {
             "with 64 cells they agree to round-off.",
             "Recovery with `classic`: .006 and .0036 of the speed of the walls remain at 64^2 and 128^2, up to four times the tolerance, and decrease at first order or less, because B "
             "in the smeared surface does not return to I.",),
-    "S11": ("The solid wall of the exact solution is at rest. A grid of 20 cells has 8 cells per radius.",),
+    "S11": ("A grid of 20 cells has 8 cells per radius.",),
     "V6": ("All runs have 23 cells per diameter and end after 4 ms.",
            "Axial diameters are within .38 um of the experiment. Transverse diameters are above it, at 19, 47 and 88 pN by up to .2 um more than the error bar.",
            "The grid is not the cause: at 47 pN after 3 ms, the diameters are 10.86 and 6.69 um with a spacing of .25 um, 10.83 and 6.70 with .33 um, and 10.84 and 6.70 without bending.",
@@ -34,7 +34,7 @@ NOTES = {
            "The drift is judged without a reference, since the exact D is steady.",),
     "L2": ("Both runs have the same grid; each chooses its own time step.",),
     "L3": ("D is compared as a vector, D e^(2 i theta), because at 45 degrees D alone would not show an error of the angle.",),
-    "L4": ("Along the cells, with surfaces on faces, the fast method is of second order, which also checks the reference. At 45 degrees, with hx different from hy, the surfaces cut the "
+    "L4": ("Along the grid, with surfaces on faces, the fast method is of second order, which also checks the reference. At 45 degrees, with hx different from hy, the surfaces cut the "
            "cells in all ways.",),
     "V2": ("Walls and images add a strain, computed from the stresslet of the drop (scripts/studies/validation/ellipsoids.py).",
            "Without tension a drop remains an ellipsoid at all times, so that the reference is exact.",),

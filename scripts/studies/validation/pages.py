@@ -3,7 +3,7 @@ import csv
 import re
 
 from .notes import NOTES
-from .subjects import SUBJECTS
+from .subjects import SUBJECTS, TITLES
 
 HEADER = ["case", "measure", "method, solver", "at", "reference", "ours", "error", "tolerance", "tolerance from",
           "errors, coarse to fine (order)", "verdict"]
@@ -42,8 +42,8 @@ summarises all cases.
 
 {contents}
 
-**Columns of the tables.** "at" is the finest grid: cells in one direction{at}. Errors on coarser grids precede that of the finest one, with
-the observed order in brackets. Errors in % are relative. A tolerance follows from theory, from the error of the reference, or is a
+**Columns of the tables.** "at" is the finest grid: cells in one direction{at}.
+Errors on coarser grids precede that of the finest one, with the observed order in brackets. Errors in % are relative. A tolerance follows from theory, from the error of the reference, or is a
 goal that was set without a theory; the letter refers to the list below the table. A tolerance that depends on the grid is that of the
 grid in the row. Where a row misses its tolerance for a known reason, "kept" is the bound beyond which it fails. Rows without a
 tolerance are reported, not judged; most of them are results of the classic method, for comparison with the fast one.
@@ -92,12 +92,6 @@ def by_family(rows):
             for name in sorted((name for name in names if belongs(page, name)), key=lambda name: ("FSRLV".index(name[0]), int(name[1:])))]
 
 
-def short(title):
-    """The title of a case with several variants: the first two, or the first and their number."""
-    kinds = title.split("; ")
-    return "; ".join(kinds) if len(kinds) < 3 else f"{kinds[0]}; {len(kinds) - 1} more"
-
-
 def summary(rows, titles):
     """One row per case: how many of its measures passed, missed as documented, failed, or are reported."""
     lines = ["| case | what | passed | missed as documented | failed | reported | page |", "|---|---|---|---|---|---|---|"]
@@ -105,7 +99,7 @@ def summary(rows, titles):
         verdicts = [row["verdict"] for row in rows if row["case"] == name]
         numbers = " | ".join(str(verdicts.count(WORDS[word]) or "") for word in (True, "misses", False, None))
         page = next(page for page in FAMILIES if belongs(page, name))
-        lines.append(f"| {name} | {short(titles.get(name, ''))} | {numbers} | [{page}](validation/{page}.md#{name.lower()}) |")
+        lines.append(f"| {name} | {TITLES.get(name, titles.get(name, ''))} | {numbers} | [{page}](validation/{page}.md#{name.lower()}) |")
     return "\n".join(lines)
 
 
@@ -121,17 +115,19 @@ def table(rows):
         lines.append("| " + " | ".join(cells[c].replace("|", "\\|") for c in shown) + " |")
     text = "\n".join(lines)
     if reasons:
+        shown = {reason: re.sub("^goal(?=$|;)", "goal, set without a theory", reason) for reason in reasons}
         text += "\n\n*Tolerances:*\n\n" + "\n".join(
-            f"- ({letter}) {reason.replace('; kept: ', '. Some rows miss this because ')}." for reason, letter in letters.items())
+            f"- ({letter}) {shown[reason].replace('; kept: ', '. Some rows miss this because ')}." for reason, letter in letters.items())
     return text
 
 
 def section(name, rows, title, picture):
     """One case: what is solved, reference, picture, notes and table. The heading is its name, so that links to it stay short."""
     solved, reference = SUBJECTS.get(name, ("", ""))
-    parts = [f"## {name}", f"**{short(title)}.** {solved}", f"**Reference.** {reference}"]
+    title = TITLES.get(name, title)
+    parts = [f"## {name}", f"**{title}.** {solved}", f"**Reference.** {reference}"]
     if picture:
-        parts.append(f"![{name}: {short(title)}](../images/{picture.name})")
+        parts.append(f"![{name}: {title}](../images/{picture.name})")
     if name in NOTES:
         parts.append("\n".join(f"- {note}" for note in NOTES[name]))
     return "\n\n".join([*parts, table(rows)]) + "\n"
@@ -140,7 +136,7 @@ def section(name, rows, title, picture):
 def write_family(rows, titles, pictures, page, path):
     title, _, at = FAMILIES[page]
     names = [name for name in by_family(rows) if belongs(page, name)]
-    contents = "\n".join(f"- [{name}](#{name.lower()}): {short(titles.get(name, ''))}" for name in names)
+    contents = "\n".join(f"- [{name}](#{name.lower()}): {TITLES.get(name, titles.get(name, ''))}" for name in names)
     sections = "\n".join(section(name, [row for row in rows if row["case"] == name], titles.get(name, name), pictures.get(name))
                          for name in names)
     path.write_text(FAMILY.format(title=title, contents=contents, at=at, sections="\n" + sections))

@@ -95,7 +95,7 @@ def row_of_u(run):
     return (run.centres(1), u[:, u.shape[1] // 4]), None
 
 
-ROUND_OFF = "1e-9: round-off, which the flow may amplify"
+ROUND_OFF = "round-off, which the flow may amplify to 1e-9"
 TRUNCATION = "twice the error of phi by the directional split, T dt^2 |grad v|^3/12 ~ 5e-5"
 ODD = "1e-7, the option -acm_tolerance, since coarse levels with an odd number of cells are not symmetric"
 CASES = (

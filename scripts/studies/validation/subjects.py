@@ -1,4 +1,20 @@
-"""For the pages of docs/validation: what each case solves, and the reference that it is compared with."""
+"""For the pages of docs/validation: the title of each case, what it solves, and the reference that it is compared with."""
+
+# Titles of the sections.
+TITLES = {
+    "F1": "Advected Taylor-Green vortices", "F2": "Taylor-Green vortex in 3-D, Re = 1600", "F3": "Start-up of flow in a channel and in a duct",
+    "F4": "Oscillating flow between plates", "F6": "Lid-driven cavity", "F7": "Double shear layer",
+    "S1": "Fluid over a solid layer, oscillating wall", "S3": "Fluid over a solid layer, steady channel flow", "S4": "Plane shear waves in a solid",
+    "S5": "Transport of B in given flows", "S6": "Soft disc in shear flow", "S7": "Released stretched disc", "S8": "Soft sphere in shear flow", "S9": "Ringing disc",
+    "S10": "Soft disc in the lid-driven cavity", "S11": "Tube with an elastic wall", "S12": "Symmetries, and recovery after shear", "R1": "Shape of a red cell",
+    "L1": "Soft disc in long shear", "L2": "Released disc in a uniform flow", "L3": "Ellipse and disc carried by a uniform flow", "L4": "Oscillating layers across the grid",
+    "V1": "Layers of two viscosities", "V2": "Drops", "V3": "Relaxing rings in two dimensions", "V4": "Capsule of small deformation",
+    "V5": "Neo-Hookean capsule in shear flow", "V6": "Red cell in optical tweezers", "V7": "Tumbling and tank-treading", "V8": "Capsule carried by a uniform flow",
+    "V9": "Capsules of two laws and three viscosity ratios", "S13": "Cubic arrays of rigid spheres", "S14": "Poiseuille flow in a rigid tube",
+    "S15": "Rotating cylinder inside a fixed one", "S16": "Cylinder in a channel, Re = 20", "S17": "Rigid tube from an inlet to an outlet",
+    "S18": "Oscillating flow in a rigid tube", "S19": "Bifurcation from a surface", "S20": "Cylinder in a channel, Re = 100", "S21": "Backward-facing step",
+    "S22": "Oscillating cylinder",
+}
 
 SUBJECTS = {
     "F1": ("Taylor-Green vortices of viscosity .01 are carried halfway through a periodic box by the mean velocity (1, 1).",
