@@ -47,6 +47,9 @@ Errors on coarser grids precede that of the finest one, with the observed order 
 goal that was set without a theory; the letter refers to the list below the table. A tolerance that depends on the grid is that of the
 grid in the row. Where a row misses its tolerance for a known reason, "kept" is the bound beyond which it fails. Rows without a
 tolerance are reported, not judged; most of them are results of the classic method, for comparison with the fast one.
+
+In the pictures a broad grey line is an exact solution or a known limit, and circles are published values, with their errors
+where these are published. The other lines are the finest run of each method and pressure solver; the number behind them is "at".
 {sections}"""
 
 # Page below validation/: (title, whether a case belongs to it, what "at" is in some of its cases).
@@ -59,7 +62,7 @@ FAMILIES = {
     "vessels": ("rigid bodies, vessels, inlets and outlets", lambda name: name[0] == "S" and int(name[1:]) > 12,
                 "; in S13 cells per radius; in S14, S17 and S18 cells across the lumen; in S19 cells per 14 um; in S16, S20 and S22 cells per diameter"),
 }
-OF_CASE = re.compile(r"^- ([A-Z]+\d+): (Made with .*)$", re.M)
+OF_CASES = re.compile(r"^- ([A-Z]+\d+(?:, [A-Z]+\d+)*): (Made with .*)$", re.M)
 
 
 def belongs(page, name):
@@ -81,7 +84,8 @@ def updated(page, rows, made, order):
     for all that were updated; `order`: names of all cases."""
     new = {row["case"] for row in rows}
     whole = [row for row in rows_of(page) if row["case"] not in new] + rows
-    since = {**dict(OF_CASE.findall(page.read_text())), **{name: made for name in new}}
+    known = {name: text for names, text in OF_CASES.findall(page.read_text()) for name in names.split(", ")}
+    since = {**known, **{name: made for name in new}}
     return sorted(whole, key=lambda row: order.index(row["case"])), {name: since[name] for name in order if name in since}
 
 
@@ -153,7 +157,10 @@ def write_page(rows, titles, pictures, path, made=None):
     counts = ", ".join(f"{sum(row['verdict'] == word for row in rows)} {name}" for word, name in
                        ((WORDS[True], "passed"), (WORDS["misses"], "missed as documented"), (WORDS[False], "failed"),
                         (WORDS[None], "reported")))
-    since = "".join(f"- {name}: {text}\n" for name, text in (made or {}).items())
+    cases = {}
+    for name, text in (made or {}).items():
+        cases.setdefault(text, []).append(name)
+    since = "".join(f"- {', '.join(names)}: {text}\n" for text, names in cases.items())
     since = f"\nThe rows of these cases are newer than the others:\n\n{since}" if since else ""
     shown = [page for page in FAMILIES if any(belongs(page, row["case"]) for row in rows)]
     for page in shown:
