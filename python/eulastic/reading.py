@@ -152,9 +152,9 @@ class Run:
         """Returns whether the species is a vessel or an obstacle (rigid, anchored or from a file, but no membrane), which the
         flow does not carry along."""
         shape, of = self.species[species], lambda name, default: self.options.get(f"{species}_{name}", default)
-        attached = of("attached", "true" if shape in ("slab", "tube", "constricted_tube") else "false")
+        anchored = of("anchored", "true" if shape in ("slab", "tube", "constricted_tube") else "false")
         law = of("law", "neo_hookean")
-        return law == "rigid" or law not in ("membrane", "red_cell") and (attached == "true" or shape == "voxels")
+        return law == "rigid" or law not in ("membrane", "red_cell") and (anchored == "true" or shape == "voxels")
 
     @property
     def cells(self):

@@ -266,7 +266,7 @@ class Scene(Framed):
         for end in (0, -1):
             wall = run.side(1, -end) == "wall" and self.look.behind.startswith("velocity_")
             if wall:
-                moves = run.options.get(f"wall_y{('min', 'max')[-end]}_velocity", "0,0,0").split(",")
+                moves = run.options.get(f"boundary_y{('min', 'max')[-end]}_velocity", "0,0,0").split(",")
                 values[end] = float(moves["xyz".index(self.look.behind[-1])])
         grid = vtk.vtkRectilinearGrid()
         grid.SetDimensions(*values.shape[::-1], 1)

@@ -31,7 +31,7 @@ LEVEL_MESSAGES = 3     # to a neighbour in a sweep, of each coarse level that is
 SPACING = 21.12 / 96   # of CASE as counted
 BOXES = "boxes"        # the verb of what a step sends because bodies lie in boxes of their own
 # What stands on the command line of scripts/count_communication beside CASE, for the counts and for -check_only.
-SETTINGS = {"fast": ["-method", "fast", "-time_step", "0.8", "-acm_tolerance", "1e-30", "-acm_sweeps_max", "2"],
+SETTINGS = {"fast": ["-method", "fast", "-time_step", "0.8", "-acm_tolerance", "1e-30", "-acm_iterations_max", "2"],
             "classic": ["-method", "classic", "-time_step", "0.004"]}
 ASSUMPTIONS = [
     "the messages of a rank leave one after the other; nothing overlaps, and the network has no other traffic and no contention",

@@ -258,7 +258,7 @@ class Voxels(WithRoom):
         self.assertAlmostEqual(float(found[2]), 100 * volume / (4 / 3 * numpy.pi * .008), delta=.3)
         self.write("p.csv", b".3,.7,.4\n.9,.7,.4\n")
         self.assertEqual(self.start(*scene).stderr, "")
-        for attached in ("-cell_attached", "true", "-part_attached", "true"), ("-part_voxels_invert",):
+        for attached in ("-cell_anchored", "true", "-part_anchored", "true"), ("-part_voxels_invert",):
             other = self.start(*scene, *attached, "-check_only").stdout
             self.assertEqual("overlap" in other, len(attached) == 1)
 

@@ -42,7 +42,7 @@ def two(first, second):
 
 def cavity(G, Re, cells=32, **more):
     """A disc in a lid-driven cavity, the lid started at once."""
-    return box(cells, "xy", 1 / Re, wall_ymax_velocity=UP, **more) | body(G, centre=".6,.5,0")
+    return box(cells, "xy", 1 / Re, boundary_ymax_velocity=UP, **more) | body(G, centre=".6,.5,0")
 
 
 def random_flow(G, Re, cells=32, **more):
@@ -52,7 +52,7 @@ def random_flow(G, Re, cells=32, **more):
 
 def shear(G, Re, cells=32, **more):
     """A disc in Couette flow between walls that start at once."""
-    return box(cells, "y", 1 / Re, wall_ymax_velocity=UP, wall_ymin_velocity=DOWN, **more) | body(G)
+    return box(cells, "y", 1 / Re, boundary_ymax_velocity=UP, boundary_ymin_velocity=DOWN, **more) | body(G)
 
 
 def per_body(cells, kind):
@@ -66,11 +66,11 @@ def thin(kind, G):
     """Plates three cells thick, 24 cells long."""
     h = 1 / 32
     plate = dict(shape="ellipsoid", semi_axes=f"{12 * h},{1.5 * h},1")
-    flow = {"sheared": box(32, "y", wall_ymax_velocity=UP, wall_ymin_velocity=DOWN),
+    flow = {"sheared": box(32, "y", boundary_ymax_velocity=UP, boundary_ymin_velocity=DOWN),
             "across": box(32, "", body_force="0,1,0"),
             "random": box(32, "", initial_velocity="random"),
-            "cavity": box(32, "xy", wall_ymax_velocity=UP),
-            "slab": box(32, "y", wall_ymax_velocity=UP)}[kind]
+            "cavity": box(32, "xy", boundary_ymax_velocity=UP),
+            "slab": box(32, "y", boundary_ymax_velocity=UP)}[kind]
     if kind == "slab":
         return flow | body(G, shape="slab", interval=f"0,{3 * h}")
     return flow | body(G, **plate, orientation="0,0,30" if kind != "across" else "0,0,0")
@@ -79,7 +79,7 @@ def thin(kind, G):
 def contact(kind, G):
     """Bodies that touch walls, each other, or everything."""
     push = dict(body_force="0,-2,0")
-    fixed = box(32, "xy", wall_ymax_velocity=UP)
+    fixed = box(32, "xy", boundary_ymax_velocity=UP)
     random = box(32, "", initial_velocity="random")
     return {
         "touching the wall": lambda: fixed | body(G, centre=".5,.2,0"),
@@ -108,7 +108,7 @@ CONTACTS = ["touching the wall", "in the corner", "at the lid", "two touching", 
 
 def reversing(frequency, G):
     """Walls that reverse, started at full speed."""
-    return shear(G, 100, wall_ymax_frequency=frequency, wall_ymin_frequency=frequency)
+    return shear(G, 100, boundary_ymax_angular_frequency=frequency, boundary_ymin_angular_frequency=frequency)
 
 
 def stretched(stretch, G):
@@ -142,7 +142,7 @@ def nothing(kind, G):
         "tiny velocity": lambda: rest | body(G) | {"initial_velocity": "random", "initial_velocity_amplitude": 1e-12},
         "tiny force": lambda: rest | body(G) | {"body_force": "1e-12,0,0"},
         "strong force": lambda: box(32, "y", end=1) | body(G) | {"body_force": "100,0,0"},
-        "fast force": lambda: rest | body(G) | {"body_force": "10,5,0", "body_force_frequency": 100},
+        "fast force": lambda: rest | body(G) | {"body_force": "10,5,0", "body_force_angular_frequency": 100},
     }[kind]()
 
 
@@ -171,7 +171,7 @@ def stepped(factor, kind):
 
 def solid(kind, G):
     """3-D."""
-    flow = box(20, "xyz", depth=20, end=1, steps=300, wall_ymax_velocity=UP)
+    flow = box(20, "xyz", depth=20, end=1, steps=300, boundary_ymax_velocity=UP)
     free = box(20, "", depth=20, end=1, steps=300, initial_velocity="random")
     return {
         "cavity": lambda: flow | body(G, centre=".6,.5,.5", radius=.25),
@@ -194,7 +194,7 @@ def long(kind, G):
     scene = {"rest": lambda: box(16, "", **short) | body(G, radius=.25),
              "shear": lambda: shear(G, 100, 16, **short),
              "cavity": lambda: cavity(G, 100, 16, **short),
-             "reversing": lambda: shear(G, 100, 16, **short, wall_ymax_frequency=3, wall_ymin_frequency=3)}[kind]()
+             "reversing": lambda: shear(G, 100, 16, **short, boundary_ymax_angular_frequency=3, boundary_ymin_angular_frequency=3)}[kind]()
     return scene | {"series_interval": 0.5}
 
 
@@ -205,9 +205,9 @@ def viscous(contrast, kind):
             "random": lambda: random_flow(0.1, 1000, **short),
             "shear": lambda: shear(1, 1, **short),
             "drop in shear": lambda: shear(0, 1, **short),
-            "touching the wall": lambda: box(32, "xy", wall_ymax_velocity=UP, **short) | body(1, centre=".5,.2,0"),
-            "slab under a lid": lambda: box(32, "xy", wall_ymax_velocity=UP, **short) | body(1, shape="slab", interval="0,.51"),
-            "3-D": lambda: box(16, "xyz", depth=16, end=1, steps=100, wall_ymax_velocity=UP) | body(1, centre=".6,.5,.5")}[kind]()
+            "touching the wall": lambda: box(32, "xy", boundary_ymax_velocity=UP, **short) | body(1, centre=".5,.2,0"),
+            "slab under a lid": lambda: box(32, "xy", boundary_ymax_velocity=UP, **short) | body(1, shape="slab", interval="0,.51"),
+            "3-D": lambda: box(16, "xyz", depth=16, end=1, steps=100, boundary_ymax_velocity=UP) | body(1, centre=".6,.5,.5")}[kind]()
     return flow | {"a_viscosity": contrast * flow["fluid_viscosity"]}
 
 

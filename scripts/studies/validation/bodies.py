@@ -92,7 +92,7 @@ def sphere(capillary, deformation, angle, time, keys, quick=()):
     def options(key, _):
         n, box = key
         return {"grid_cells": ",".join([str(n * box)] * 3), "grid_length": ",".join([str(box)] * 3),
-                "wall_ymin_velocity": f"{-RATE * box / 2},0,0", "wall_ymax_velocity": f"{RATE * box / 2},0,0",
+                "boundary_ymin_velocity": f"{-RATE * box / 2},0,0", "boundary_ymax_velocity": f"{RATE * box / 2},0,0",
                 "sphere_shear_modulus": RATE / capillary, "time_end": time / RATE, "snapshot_interval": 0}
 
     def line(run):

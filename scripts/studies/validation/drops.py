@@ -9,7 +9,7 @@ from .case import Case, Measure
 
 TENSION, VISCOSITY = 20, 1  # of shear rate and radius 1: Ca = .05
 
-STILL = {"wall_ymin_velocity": "0,0,0", "wall_ymax_velocity": "0,0,0", "initial_velocity": "zero"}
+STILL = {"boundary_ymin_velocity": "0,0,0", "boundary_ymax_velocity": "0,0,0", "initial_velocity": "zero"}
 
 
 @functools.lru_cache(maxsize=None)
@@ -55,7 +55,7 @@ def at_rest(name, title, cells, settings, quick, early):
 def in_shear(ratio, time, keys, quick=()):
     def options(key, _):
         n, box = key
-        return {**cube(n, box), "wall_ymin_velocity": f"{-box / 2},0,0", "wall_ymax_velocity": f"{box / 2},0,0",
+        return {**cube(n, box), "boundary_ymin_velocity": f"{-box / 2},0,0", "boundary_ymax_velocity": f"{box / 2},0,0",
                 "drop_viscosity": ratio, "drop_surface_tension": TENSION, "time_end": time}
 
     def excess(run):
@@ -110,7 +110,7 @@ def without_tension(ratio, strain, keys, quick=(), kept=None):
     def options(n, _):
         wall = FREE_BOX[1] / 2
         return {"grid_cells": ",".join(str(n * side) for side in FREE_BOX), "grid_length": ",".join(map(str, FREE_BOX)),
-                "wall_ymin_velocity": f"{-wall},0,0", "wall_ymax_velocity": f"{wall},0,0", "fluid_density": .1, "fluid_inertia": "false",
+                "boundary_ymin_velocity": f"{-wall},0,0", "boundary_ymax_velocity": f"{wall},0,0", "fluid_density": .1, "fluid_inertia": "false",
                 "drop_viscosity": ratio, "drop_surface_tension": 0, "time_end": strain, "series_interval": strain / 20, "snapshot_interval": 0}
 
     def exact(run):

@@ -43,7 +43,7 @@ def axes(run):
 
 def sheared(capillary, height, strain):
     """Options of a disc in the middle of a square box with walls. rho gd R^2/mu = .001: with .01 inertia adds .5 % to D."""
-    return {"wall_ymin_velocity": f"{-RATE * height / 2},0,0", "wall_ymax_velocity": f"{RATE * height / 2},0,0",
+    return {"boundary_ymin_velocity": f"{-RATE * height / 2},0,0", "boundary_ymax_velocity": f"{RATE * height / 2},0,0",
             "disc_shear_modulus": RATE / capillary, "fluid_density": 0.02, "time_end": strain / RATE,
             "series_interval": 0.1 / RATE}
 

@@ -79,7 +79,7 @@ SMALL = {row[1]: row[2:4] for row in reference("capsule_linear") if row[0] == 1}
 def small(key, _):
     n, box = key
     return {"grid_cells": ",".join([str(n * box)] * 3), "grid_length": ",".join([str(box)] * 3),
-            "wall_ymin_velocity": f"{-box / 2},0,0", "wall_ymax_velocity": f"{box / 2},0,0",
+            "boundary_ymin_velocity": f"{-box / 2},0,0", "boundary_ymax_velocity": f"{box / 2},0,0",
             "capsule_surface_shear_modulus": 1 / CAPILLARY, "time_end": .6, "series_interval": .02, "snapshot_interval": 0}
 
 

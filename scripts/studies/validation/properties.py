@@ -37,7 +37,7 @@ def cavity_options(key, _):
     """The lid above, or the same scene turned by 90 degrees: the lid at the left, upwards."""
     turned = key == "turned"
     return {"grid_cells": "48,48,1", "time_end": 2, "snapshot_interval": 2, "snapshot_precision": "double",
-            "wall_ymax_velocity": "0,0,0" if turned else "1,0,0", "wall_xmin_velocity": "0,1,0" if turned else "0,0,0",
+            "boundary_ymax_velocity": "0,0,0" if turned else "1,0,0", "boundary_xmin_velocity": "0,1,0" if turned else "0,0,0",
             "disc_centre": "0.5,0.6,0" if turned else "0.6,0.5,0"}
 
 
@@ -53,10 +53,10 @@ def recovery_options(key, folder):
     common = {"grid_cells": f"{n},{n},1", "grid_length": "8,8,1", "disc_shear_modulus": 0.5, "snapshot_precision": "double",
               "snapshot_fields": "velocity,pressure,solid_fraction,body,left_cauchy_green"}
     if part == "sheared":
-        return {**common, "wall_ymin_velocity": "-0.2,0,0", "wall_ymax_velocity": "0.2,0,0", "time_end": 30,
+        return {**common, "boundary_ymin_velocity": "-0.2,0,0", "boundary_ymax_velocity": "0.2,0,0", "time_end": 30,
                 "snapshot_interval": 30}
     state = sorted(folder((n, "sheared")).glob("snapshot_*.h5"))[-1]
-    return {**common, "wall_ymin_velocity": "0,0,0", "wall_ymax_velocity": "0,0,0", "initial_velocity": "zero",
+    return {**common, "boundary_ymin_velocity": "0,0,0", "boundary_ymax_velocity": "0,0,0", "initial_velocity": "zero",
             "initial_state": state, "time_end": 60, "snapshot_interval": 60}
 
 

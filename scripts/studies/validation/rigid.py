@@ -71,7 +71,7 @@ def pulse(run):
 
 def pulse_options(across, _):
     period = 2 * math.pi / FREQUENCY
-    return {**tube_options(across, _), "fluid_viscosity": VISCOSITY, "body_force_frequency": FREQUENCY, "time_end": PERIODS * period,
+    return {**tube_options(across, _), "fluid_viscosity": VISCOSITY, "body_force_angular_frequency": FREQUENCY, "time_end": PERIODS * period,
             "time_step": period / (2 * across), "series_interval": period / (2 * across)}
 
 
@@ -118,7 +118,7 @@ def step_options(n, _):
     path.parent.mkdir(exist_ok=True)
     y = numpy.clip(numpy.arange(n + 1) / n, .5, 1)
     path.write_text("\n".join(f"{u:.15g}" for u in n * numpy.diff(24 * (.75 * y**2 - y**3 / 3 - y / 2))) + "\n")
-    return {"grid_cells": f"{30 * n},{n},1", "grid_length": f"30,1,{1 / n}", "inflow_xmin_profile": path, "snapshot_interval": 400}
+    return {"grid_cells": f"{30 * n},{n},1", "grid_length": f"30,1,{1 / n}", "boundary_xmin_profile": path, "snapshot_interval": 400}
 
 
 def turns(run, row, beside):
@@ -163,8 +163,8 @@ CASES = (
     Case("S17", "Rigid tube from an inlet to an outlet", "sphere_array",
          lambda across, _: {**tube_options(across, _), "grid_cells": f"{24 * across // 20},{round(across / ACROSS)},{round(across / ACROSS)}",
                             "grid_length": f"{24 * across // 20 / round(across / ACROSS)},1,1", "body_force": "0,0,0",
-                            "boundary_xmin": "inflow", "boundary_xmax": "pressure", "inflow_xmin_profile": "developed",
-                            "inflow_xmin_flow_rate": .1, "probe_points": "0.3,0.513,0.487:0.6,0.513,0.487"},
+                            "boundary_xmin": "inflow", "boundary_xmax": "pressure", "boundary_xmin_profile": "developed",
+                            "boundary_xmin_flow_rate": .1, "probe_points": "0.3,0.513,0.487:0.6,0.513,0.487"},
          fast_at((10, 20, 40)), fast_at((10, 20)),
          (Measure("pressure gradient", gradient, {"fast": lambda across: .01 * (20 / across)**1.8},
                   "goal: 1 % at 20 cells across, order 1.8", -12.8 / (math.pi * ACROSS**4), True, order={"fast": 1.8}),),
@@ -176,14 +176,14 @@ CASES = (
          lambda run: ((run.series.time, run.series.bulk_velocity_x),
                       (run.series.time, (womersley_flow() * numpy.exp(1j * FREQUENCY * run.series.time)).real)), ("t", "mean velocity")),
     Case("S19", "Bifurcation from a surface, one inlet and two outlets", "bifurcation",
-         lambda n, _: {"grid_cells": f"{72 * n // 14},{48 * n // 14},{20 * n // 14}", "cell_count": 0, "inflow_xmin_feeder": 0,
-                       "inflow_xmin_flow_rate": 5, "time_end": 60, "snapshot_interval": 0},
+         lambda n, _: {"grid_cells": f"{72 * n // 14},{48 * n // 14},{20 * n // 14}", "cell_count": 0, "boundary_xmin_generator_length": 0,
+                       "boundary_xmin_flow_rate": 5, "time_end": 60, "snapshot_interval": 0},
          fast_at((14, 21, 28)), fast_at((14,)),
          (Measure("share of the upper outlet", lambda run: -float(run.series.flow_rate_ymax[-1]) / 5, {"fast": .05},
                   "goal: 5 %; the network of resistances neglects the rounding of the fork", upper_share(), True),),
          lambda run: ((run.series.time[1:], -run.series.flow_rate_ymax[1:]), None), ("t, us", "flow rate at the upper outlet, um^3/us")),
     Case("S20", "Cylinder in a channel, Re = 100", "cylinder_in_channel",
-         lambda n, _: {"grid_cells": f"{22 * n},{41 * n // 10},1", "inflow_xmin_velocity": 1, "time_end": 8, "snapshot_interval": 0,
+         lambda n, _: {"grid_cells": f"{22 * n},{41 * n // 10},1", "boundary_xmin_velocity": 1, "time_end": 8, "snapshot_interval": 0,
                        "series_interval": .005}, fast_at((20, 40)), (),
          (Measure("largest drag coefficient", lambda run: float(late(run)[1].max()), {"fast": lambda n: .01 * (40 / n)**2},
                   "goal: 1 % at 40 cells in the diameter", 3.23, True),

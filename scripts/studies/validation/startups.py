@@ -24,7 +24,7 @@ def case(start):
 
     def options(n, _):
         return {"grid_cells": ",".join(str(n * side) for side in start.box), "grid_length": ",".join(map(str, start.box)),
-                "capsule_membrane": start.law, "capsule_surface_shear_modulus": 1 / start.capillary, "capsule_viscosity": start.ratio,
+                "capsule_membrane_law": start.law, "capsule_surface_shear_modulus": 1 / start.capillary, "capsule_viscosity": start.ratio,
                 "time_end": start.end, "series_interval": start.interval, "snapshot_interval": 0}
 
     def deformation(time):

@@ -12,7 +12,7 @@ BOX = (4, 5, 4)  # in radii: what walls add to the strain rate there, images nea
 
 
 def strain(run):
-    return run.bodies.time * 2 * float(run.options["wall_ymax_velocity"].split(",")[0]) / run.length[1]
+    return run.bodies.time * 2 * float(run.options["boundary_ymax_velocity"].split(",")[0]) / run.length[1]
 
 
 def turned(run):
@@ -60,8 +60,8 @@ def period_in(box):
 
 def long_run(n, _):
     wall = LONG_BOX[1] / 2
-    return {**cells(n, LONG_BOX), "grid_length": ",".join(map(str, LONG_BOX)), "wall_ymin_velocity": f"{-wall},0,0",
-            "wall_ymax_velocity": f"{wall},0,0", "time_end": 47.5, "series_interval": .1, "snapshot_interval": 47.5}
+    return {**cells(n, LONG_BOX), "grid_length": ",".join(map(str, LONG_BOX)), "boundary_ymin_velocity": f"{-wall},0,0",
+            "boundary_ymax_velocity": f"{wall},0,0", "time_end": 47.5, "series_interval": .1, "snapshot_interval": 47.5}
 
 
 def semi_axes(run):

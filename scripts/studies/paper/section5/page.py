@@ -134,7 +134,7 @@ tests/convergence/tube_test.cpp asserts the order.
 
 The error of u is the root mean square over the lumen, relative to the largest u. The error of the flow rate is relative. The order is that from half as many cells; it varies
 because the surface cuts each grid differently. From 40 cells on, the wall is at least four grid cells thick; with two or three the errors are larger than the order suggests. The last
-line has `-vessel_attached false`, which treats the wall like a free body ([method.md](method.md), section 7): the wall does not move either, but its surface is of first
+line has `-vessel_anchored false`, which treats the wall like a free body ([method.md](method.md), section 7): the wall does not move either, but its surface is of first
 order, so that the lumen acts as if it were narrower.
 """
 
