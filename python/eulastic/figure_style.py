@@ -67,14 +67,15 @@ def least_range(axis, part=1e-3):
         axis.set_ylim((low + high) / 2 - 0.05 * size, (low + high) / 2 + 0.05 * size)
 
 
-def save(figure, path, colours=None):
-    """A file of the figure, and closes it. `colours`: a PNG of a palette of so many, a quarter of the size."""
+def save(figure, path, colours=None, **options):
+    """A file of the figure, and closes it. `colours`: a PNG of a palette of so many, a quarter of the size; `options` are of
+    matplotlib's savefig."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if colours:
         from PIL import Image
         picture = io.BytesIO()
-        figure.savefig(picture, format="png")
+        figure.savefig(picture, format="png", **options)
         Image.open(picture).convert("RGB").quantize(colours).save(path, optimize=True)
     else:
-        figure.savefig(path, **({"pil_kwargs": {"optimize": True}} if path.suffix == ".png" else {}))
+        figure.savefig(path, **({"pil_kwargs": {"optimize": True}} if path.suffix == ".png" else {}), **options)
     plt.close(figure)
