@@ -78,7 +78,10 @@ def write_table(scenes, path):
     rows = {tuple(line.split(" | ")[:2]): line for line in old.splitlines()[2:] if line.startswith("| ")}
     for group in groups.values():
         for method in ("fast", "classic"):
-            rows["| " + group.title, method] = table_row(group, method, scenes)
+            if method in group.methods:
+                rows["| " + group.title, method] = table_row(group, method, scenes)
+            else:
+                rows.pop(("| " + group.title, method), None)
     failed = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
     failed += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
     count = sum(int(row.split(" | ")[column]) for row in rows.values() for column in (2, 4))

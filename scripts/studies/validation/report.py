@@ -2,6 +2,7 @@
 import csv
 import math
 import re
+import textwrap
 
 import numpy
 from eulastic import figure_style as style
@@ -106,8 +107,8 @@ def draw_case(axis, case, results):
         axis.plot(*mine, color=colour, ls=dashes, marker=mark if len(mine[0]) < 10 else "", ms=4, label=setting.label + at)
         if reference is not None and not any(same_curve(known, reference) for known in drawn):
             drawn.append(reference)
-            draw_reference(axis, reference, "reference" + (f", {name_of(key)}" if len(drawn) > 1 else ""))
-    axis.set(xlabel=case.axes[0], ylabel=case.axes[1], **case.scales)
+            draw_reference(axis, reference, "reference" + (f", {setting.label}" if len(drawn) > 1 else ""))
+    axis.set(xlabel=case.axes[0], ylabel=textwrap.fill(case.axes[1], 30), **case.scales)
     if axis.get_xscale() == "log":
         axis.set_xticks(axis.lines[0].get_xdata(), [f"{x:g}" for x in axis.lines[0].get_xdata()])
         axis.minorticks_off()
@@ -120,15 +121,27 @@ def legend_entries(axis):
     return dict(zip(("handles", "labels"), zip(*entries)))
 
 
+def one_legend_will_do(axes):
+    """Whether no two labels of these axes look alike."""
+    looks = {}
+    for axis in axes:
+        for line in axis.lines:
+            looks.setdefault((line.get_color(), line.get_linestyle(), line.get_marker()), set()).add(line.get_label())
+    return all(len(labels) == 1 for labels in looks.values())
+
+
 def draw(cases, results, path):
     """All cases of one name side by side."""
     columns = 1 if len(cases) == 1 else 2 if len(cases) < 5 else 3
-    figure, axes = style.panels(len(cases), columns, height=3.2 if columns < 3 else 3)
+    figure, axes = style.panels(len(cases), columns, height=3.2 if columns < 3 else 2.9)
     for axis, case in zip(axes, cases):
         draw_case(axis, case, results[case])
-        if columns == 1:
-            style.legend_beside(axis, **legend_entries(axis))
-        else:
+    if columns == 1:
+        style.legend_beside(axes[0], **legend_entries(axes[0]))
+    elif one_legend_will_do(axes):
+        style.legend_below(figure, axes, columns=5)
+    else:
+        for axis in axes:
             style.legend_above(axis, columns=2 if columns == 2 else 1, **legend_entries(axis))
     figure.suptitle(cases[0].name, fontsize=9)
     style.save(figure, path, colours=32)
@@ -189,7 +202,7 @@ FAMILIES = {
 }
 
 
-OF_CASE = re.compile(r"^- ([A-Z]+\d+): (Made with .*)$", re.M)
+OF_CASES = re.compile(r"^- ([A-Z]+\d+(?:, [A-Z]+\d+)*): (Made with .*)$", re.M)
 
 
 def rows_file(page):
@@ -207,7 +220,8 @@ def updated(page, rows, made, order):
     for all that were updated; `order`: names of all cases."""
     new = {row["case"] for row in rows}
     whole = [row for row in rows_of(page) if row["case"] not in new] + rows
-    since = {**dict(OF_CASE.findall(page.read_text())), **{name: made for name in new}}
+    known = {name: text for names, text in OF_CASES.findall(page.read_text()) for name in names.split(", ")}
+    since = {**known, **{name: made for name in new}}
     return sorted(whole, key=lambda row: order.index(row["case"])), {name: since[name] for name in order if name in since}
 
 
@@ -243,7 +257,10 @@ def write_page(rows, titles, pictures, path, made=None):
     counts = ", ".join(f"{sum(row['verdict'] == word for row in rows)} {name}" for word, name in
                        ((WORDS[True], "passed"), (WORDS["misses"], "missed as documented"), (WORDS[False], "failed"),
                         (WORDS[None], "reported")))
-    since = "".join(f"- {name}: {text}\n" for name, text in (made or {}).items())
+    cases = {}
+    for name, text in (made or {}).items():
+        cases.setdefault(text, []).append(name)
+    since = "".join(f"- {', '.join(names)}: {text}\n" for text, names in cases.items())
     since = f"The rows of these cases are newer than the others:\n\n{since}\n" if since else ""
     shown = [page for page, (_, belongs) in FAMILIES.items() if any(belongs(row["case"]) for row in rows)]
     for page in shown:
