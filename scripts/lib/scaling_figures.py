@@ -16,9 +16,11 @@ import sys
 import tempfile
 
 from communication_counts import Counts, library, program
-from eulastic.figure_style import BLUE, VERMILLION, legend_below, panels, save
 from performance_runs import ENVIRONMENT, ROOT, on_ranks
 from scaling_model import ASSUMPTIONS, CASE, Machine, Split, Step, model
+
+sys.path.insert(0, str(ROOT / "scripts"))
+from eulastic.figure_style import BLUE, VERMILLION, legend_below, panels, save  # noqa: E402
 
 METHODS = "fast", "classic"
 MEASURED = {"fast": (BLUE, "o-"), "classic": (VERMILLION, "s-")}
