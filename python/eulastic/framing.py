@@ -10,7 +10,7 @@ from .rounding import round_down
 ANGLE = 28  # of view, degrees
 INK = 0.15, 0.15, 0.2
 FONT = str(pathlib.Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf")  # VTK's own has no rho
-WIDTH = 1500  # of a picture, whose height follows from the box
+WIDTH = 1600  # of a picture, whose height follows from the box
 
 
 class Framed:
@@ -83,7 +83,9 @@ class Framed:
         renderer.ResetCameraClippingRange()
 
     def letters(self, part):
-        return max(11, int(numpy.sqrt(numpy.prod(self.window.GetSize())) / part))
+        """Height of letters in pixels: by the width, as pictures are shown as wide as a column of text, less in very flat ones."""
+        width, height = self.window.GetSize()
+        return max(11, int(min(width, 2.2 * height) / part))
 
     def add_words(self, renderer, snapshot):
         from .scene import GREENS

@@ -109,7 +109,7 @@ def sphere(capillary, deformation, angle, time, keys, quick=()):
                  Measure(f"Ca {capillary}: Taylor deformation in this box", last("taylor_deformation"), {},
                          "walls and periodic images increase D", deformation, True),
                  Measure(what % "inclination", limit("inclination"), {"fast": .5}, "goal, as in S6", angle, whole=True)),
-                line, ("t", f"D, Ca = {capillary}"),
+                line, ("t", f"D, Ca = {capillary}; reference: unbounded"),
                 (Measure(what % "Taylor deformation", limit("taylor_deformation"), {"fast": .05},
                          "goal: 1 % at 16 cells per radius (S6), of second order, so 7 % at 6; less after the extrapolation",
                          deformation, True, whole=True),))
@@ -236,7 +236,7 @@ CASES = (
          path_line, ("x", "y"),
          (Measure("distance from the path to t = 2", path_distance(0, 2), {"fast": lambda n: .005 * (128 / n)},
                   "that of 256^2 to t = 5, scaled with h"),
-          Measure("drift of the area", drift, AREA_DRIFT, AREA_WHY)), {"time_end": 2}),
+          Measure("drift of the area", drift, AREA_DRIFT, AREA_WHY)), {"time_end": 2}, scales={"aspect": "equal"}),
     Case("R1", "The shape of a red cell", "channel_rbc",
          lambda n, _: {"grid_cells": f"{n},{n // 2},{n}", "grid_length": "10.56,5.28,10.56", "rbc_count": "1,1,1",
                        "time_steps_max": 1, "snapshot_interval": 1, "snapshot_precision": "double"},

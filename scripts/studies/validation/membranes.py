@@ -66,6 +66,18 @@ def slip_rate(run):
     return float(-numpy.polyfit(t[late], numpy.log(energy[late]), 1)[0] / 2)
 
 
+def bending_line(run):
+    t, d = run.bodies.time, run.bodies.taylor_deformation[:, 0]
+    fine, begin = numpy.linspace(0, t[-1], 101), .25 * t[-1]
+    return (t, d), (fine, float(numpy.interp(begin, t, d)) * numpy.exp(-BEND * (fine - begin)))
+
+
+def slip_line(run):
+    t, energy = run.series.time, run.series.surface_energy
+    fine = numpy.linspace(0, t[-1], 101)
+    return (t, energy), (fine, float(numpy.interp(.2, t, energy)) * numpy.exp(-2 * SLIP * (fine - .2)))
+
+
 def bending_energy(run):
     return float(run.bodies.bending_energy[-1, 0] / numpy.pi)
 
@@ -83,9 +95,17 @@ def small(key, _):
             "capsule_surface_shear_modulus": 1 / CAPILLARY, "time_end": .6, "series_interval": .02, "snapshot_interval": 0}
 
 
+def small_limit(run):
+    """D/Ca between these walls and images."""
+    return SMALL[0] / (1 - 10 / 3 * numpy.pi * ellipsoids.images(run.length)[:2].sum())
+
+
 def excess(run):
-    walls = 1 / (1 - 10 / 3 * numpy.pi * ellipsoids.images(run.length)[:2].sum())
-    return float(run.bodies.taylor_deformation[-1, 0] / CAPILLARY / (SMALL[0] * walls))
+    return float(run.bodies.taylor_deformation[-1, 0] / CAPILLARY / small_limit(run))
+
+
+def small_line(run):
+    return (run.bodies.time, run.bodies.taylor_deformation[:, 0] / CAPILLARY), (run.bodies.time[[0, -1]], [small_limit(run)] * 2)
 
 
 def slow_rate(run):
@@ -135,11 +155,14 @@ def tweezer_measures():
 
 
 def tweezer_line(runs):
-    """Axial diameters over the force, then transverse ones."""
+    """Axial diameters over the force, then transverse ones; of the experiment with their errors."""
     found = numpy.array([(TWEEZERS[force][0], *diameters(run)) for force, run in runs.items()])
-    known = reference("mills_2004_tweezers")[:, [0, 1, 3]]
-    return tuple((numpy.concatenate([part[:, 0], [numpy.nan], part[:, 0]]),
-                  numpy.concatenate([part[:, 1], [numpy.nan], part[:, 2]])) for part in (found, known))
+    force, axial, axial_error, transverse, transverse_error = reference("mills_2004_tweezers").T
+
+    def joined(one, other):
+        return numpy.concatenate([one, [numpy.nan], other])
+    return ((joined(found[:, 0], found[:, 0]), joined(found[:, 1], found[:, 2])),
+            (joined(force, force), joined(axial, transverse), joined(axial_error, transverse_error)))
 
 
 def largest_change(name):
@@ -167,19 +190,19 @@ CASES = (
                   "2 % of second order, and the error of the curvature, .03 to .06 depending on the position of the ring in the grid", BEND, True),
           Measure("bending energy relative to that of a disc", bending_energy, {"fast": lambda n: .06 * max(1, (12 / n)**2)},
                   "the ring still deviates from a disc by .03, which contributes .01; second order", 1, True)),
-         lambda run: ((run.bodies.time, run.bodies.taylor_deformation[:, 0]), None), ("t", "D")),
+         bending_line, ("t", "D; in this box, linear")),
     Case("V3", "Ring relaxing along its surface", "bending_ring", slipping,
          fast_at((8, 16, 32)), fast_at((8,)),
          (Measure("rate of relaxation along the surface in this box", slip_rate, {"fast": lambda n: 2.72 / n},
                   "goal: 17 % at 16 cells per radius; first order", SLIP, True),),
-         lambda run: ((run.series.time, run.series.surface_energy), None), ("t", "energy")),
+         slip_line, ("t", "energy; in this box, linear")),
     Case("V4", "Capsule in shear flow, small deformation", "capsule_in_shear", small,
          fast_at(((8, 6), (8, 8), (12, 6))), fast_at(((6, 5),)),
          (Measure("D/Ca relative to 25/12 with these walls", excess, {"fast": lambda key: .04 * max(1, 16 / key[0])},
                   "goal: 4 % at 16 cells per radius; first order", 1, True),
           Measure("slow rate of decay, in G_s/(mu a), unbounded", unbounded_rate, {"fast": lambda key: .04 * max(1, 16 / key[0])},
                   "as D/Ca", SMALL[1], True, whole=True)),
-         lambda run: ((run.bodies.time, run.bodies.taylor_deformation[:, 0] / CAPILLARY), None), ("shear x time", "D/Ca")),
+         small_line, ("shear x time", "D/Ca; limit of small deformation")),
     Case("V5", "Capsule in shear flow, neo-Hookean, Ca = .15", "capsule_in_shear", options, fast_at((8, 12)), fast_at((6,)),
          (measure(.64), measure(1.28), measure(1.92),
           Measure("change of volume", drift, {"fast": 1e-5}, "the volume changes by div v only, as the area in S10")),
@@ -197,5 +220,5 @@ CASES = (
                   misses={"fast": (lambda n: .0065 * (8 / n)**2, "the area changes at the start, since planes of exact fractions have less area "
                                    "than those of a surface that has moved, and is constant afterwards")}),
           Measure("change of volume", drift, {"fast": 1e-5}, "the volume changes by div v only, as the area in S10")),
-         lambda run: ((run.bodies.time, run.bodies.taylor_deformation[:, 0]), None), ("t", "D")),
+         lambda run: ((run.bodies.time, run.bodies.taylor_deformation[:, 0]), (run.bodies.time[[0, -1]], [1 / 3, 1 / 3])), ("t", "D")),
 )

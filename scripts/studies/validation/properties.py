@@ -90,9 +90,20 @@ def strain_order(runs):
     return float(numpy.log(at[0] / at[1]) / numpy.log(fine / coarse))
 
 
-def row_of_u(run):
-    u = velocity(run)[0]
-    return (run.centres(1), u[:, u.shape[1] // 4]), None
+def row_of_u(change):
+    """u on a line along y of the first run, beside that of the second one."""
+    def line(runs):
+        first, second = runs.values()
+        u, other = velocity(first)[0], change(velocity(second))[0]
+        return (first.centres(1), u[:, u.shape[1] // 4]), (first.centres(1), other[:, u.shape[1] // 4])
+    return line
+
+
+def recovery_line(runs):
+    """D over its start in the finest pair, while the walls rest: it vanishes."""
+    run = runs[max(n for n, _ in runs), "released"]
+    t, d = run.bodies.time, run.bodies.taylor_deformation[:, 0]
+    return (t, d / d[0]), ([t[-1] / 2, t[-1]], [0, 0])
 
 
 ROUND_OFF = "round-off, which the flow may amplify to 1e-9"
@@ -103,21 +114,21 @@ CASES = (
          every(("scene", "mirrored"), methods=("fast",), solvers=("acm",)),
          (Measure("mirrored scene, 64 cells: velocity", difference(velocity, mirrored_in_y), {"fast": 1e-9, "classic": 1e-9},
                   ROUND_OFF, whole=True),),
-         row_of_u, ("y", "u, mirrored")),
+         row_of_u(mirrored_in_y), ("y", "u; reference: mirrored"), whole_curve=True),
     Case("S12", "The mirrored scene, 48 cells", "disc_in_channel", mirror_options(48),
          every(("scene", "mirrored"), methods=("fast",), solvers=("acm",)), (),
          (Measure("mirrored scene, 48 cells: velocity", difference(velocity, mirrored_in_y), {"fast": 1e-7}, ODD, whole=True),),
-         row_of_u, ("y", "u, mirrored, 48")),
+         row_of_u(mirrored_in_y), ("y", "u, 48 cells; reference: mirrored"), whole_curve=True),
     Case("S12", "The turned scene", "lid_cavity_disc", cavity_options, every(("scene", "turned")),
          every(("scene", "turned"), solvers=("acm",)),
          (Measure("turned scene: velocity", difference(velocity, rotated), {"fast": 1e-4, "classic": 1e-9},
                   "classic: " + ROUND_OFF + "; fast: " + TRUNCATION, whole=True),),
-         row_of_u, ("y", "u, turned")),
+         row_of_u(rotated), ("y", "u; reference: turned"), whole_curve=True),
     Case("S12", "A body without stress", "lid_cavity", stressless_options, every(("body", "fluid")),
          every(("body", "fluid"), solvers=("acm",)),
          (Measure("body without stress and pure fluid: velocity", difference(velocity, lambda v: v),
                   {"fast": 1e-9, "classic": 1e-9}, ROUND_OFF, whole=True),),
-         row_of_u, ("y", "u, no stress")),
+         row_of_u(lambda v: v), ("y", "u; reference: no body"), whole_curve=True),
     Case("S12", "Recovery when the walls stop", "disc_in_shear", recovery_options,
          every(tuple((n, part) for n in (64, 128) for part in ("sheared", "released")), solvers=("acm",)),
          every(tuple((n, part) for n in (32, 64) for part in ("sheared", "released")), methods=("fast",),
@@ -130,5 +141,5 @@ CASES = (
           Measure("recovery: remaining rms of B - I, relative to the largest", strain_left, {}, "reported: the value decreases with the spacing", whole=True),
           Measure("recovery: amount by which the order of B - I is below 1/2", lambda runs: max(0, .5 - strain_order(runs)), {"fast": 0},
                   "order at least 1/2, that of an error of fixed size in a layer of cells", whole=True)),
-         lambda run: ((run.bodies.time, run.bodies.taylor_deformation[:, 0]), None), ("t", "D, walls at rest")),
+         recovery_line, ("t", "D over its start, walls at rest"), whole_curve=True),
 )

@@ -1,14 +1,11 @@
 """Judges the runs of the cases: the rows of the tables, and one plot per name. pages.py writes the pages."""
-import io
 import math
+import textwrap
 
-import matplotlib
+import numpy
+from eulastic import figure_style as style
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from PIL import Image  # noqa: E402  (matplotlib's own)
-
-from .pages import HEADER, WORDS, rows_of, updated, write_page  # noqa: E402,F401
+from .pages import HEADER, WORDS, rows_of, updated, write_page  # noqa: F401
 
 
 def name_of(key):
@@ -67,30 +64,73 @@ def observed_order(ladder):
     return math.log(e / f) / math.log(m / n) if e > 0 and f > 0 else math.nan
 
 
+def draw_reference(axis, reference, label):
+    """Exact solutions and limits as a broad line; the few points of a published table, with their errors if it has them, as marks."""
+    x, y, *errors = (numpy.asarray(part, dtype=float) for part in reference)
+    if errors:
+        axis.errorbar(x, y, errors[0] if numpy.any(errors[0]) else None, label=label, capsize=3, elinewidth=1, **style.TABLE)
+    elif 2 < len(x) < 20 or len(x) == 1:
+        axis.plot(x, y, label=label, **style.TABLE)
+    else:
+        axis.plot(x, y, label=label, **style.EXACT)
+
+
+def same_curve(one, other):
+    """Whether two references are one: the same values where both are known."""
+    (x, y, *_), (a, b, *_) = one, other
+    if numpy.any(numpy.diff(x) <= 0) or numpy.any(numpy.diff(a) <= 0):
+        return numpy.shape(x) == numpy.shape(a) and numpy.allclose(y, b, equal_nan=True)
+    return numpy.allclose(numpy.interp(a, x, y), b, atol=0.01 * numpy.ptp(b) + 1e-12)
+
+
+def draw_case(axis, case, results):
+    """The finest run of every setting over the references: one, unless they differ from setting to setting."""
+    drawn, labels = [], [setting.label for setting, _ in results]
+    for n, (setting, runs) in enumerate(results):
+        key = list(runs)[-1]
+        mine, reference = case.curve(runs if case.whole_curve else runs[key])
+        colour, dashes, mark = style.METHODS[setting.label]
+        if labels.count(setting.label) > 1:  # grids of one method: a colour each
+            colour, dashes = style.COLOURS[n % len(style.COLOURS)], style.DASHES[n % len(style.DASHES)]
+        at = "" if case.whole_curve else f", {name_of(key)}"
+        axis.plot(*mine, color=colour, ls=dashes, marker=mark if len(mine[0]) < 10 else "", ms=4, label=setting.label + at)
+        if reference is not None and not any(same_curve(known, reference) for known in drawn):
+            drawn.append(reference)
+            draw_reference(axis, reference, "reference" + (f", {setting.label}" if len(drawn) > 1 else ""))
+    axis.set(xlabel=case.axes[0], ylabel=textwrap.fill(case.axes[1], 30), **case.scales)
+    if axis.get_xscale() == "log":
+        axis.set_xticks(axis.lines[0].get_xdata(), [f"{x:g}" for x in axis.lines[0].get_xdata()])
+        axis.minorticks_off()
+    style.least_range(axis)
+
+
+def legend_entries(axis):
+    """Handles and labels, the references last."""
+    entries = sorted(zip(*axis.get_legend_handles_labels()), key=lambda entry: entry[1].startswith("reference"))
+    return dict(zip(("handles", "labels"), zip(*entries)))
+
+
+def one_legend_will_do(axes):
+    """Whether no two labels of these axes look alike."""
+    looks = {}
+    for axis in axes:
+        for line in axis.lines:
+            looks.setdefault((line.get_color(), line.get_linestyle(), line.get_marker()), set()).add(line.get_label())
+    return all(len(labels) == 1 for labels in looks.values())
+
+
 def draw(cases, results, path):
-    """All cases of one name side by side: the finest run of every setting over the reference."""
-    cases = cases[:6]
-    columns = min(3, len(cases))
-    lines = -(-len(cases) // columns)
-    figure, axes = plt.subplots(lines, columns, figsize=(3.6 * columns, 2.8 * lines), squeeze=False)
-    for axis in axes.flat[len(cases):]:
-        axis.set_visible(False)
-    styles = {"fast, ACM": "C3-", "fast, SMAC": "C1--", "classic, ACM": "C0-.", "classic, SMAC": "C9:"}
-    for axis, case in zip(axes.flat, cases):
-        reference = None
-        for setting, runs in results[case]:
-            key = list(runs)[-1]
-            mine, reference = case.curve(runs if case.whole_curve else runs[key])
-            at = "" if case.whole_curve else f", {name_of(key)}"
-            axis.plot(*mine, styles[setting.label], lw=1, label=setting.label + at)
-        if reference is not None:
-            axis.plot(*reference, "ko" if len(reference[0]) < 20 else "k-", ms=3, lw=3, alpha=.25, label="reference", zorder=0)
-        axis.set(xlabel=case.axes[0], ylabel=case.axes[1])
-        axis.legend(fontsize=6)
+    """All cases of one name side by side."""
+    columns = 1 if len(cases) == 1 else 2 if len(cases) < 5 else 3
+    figure, axes = style.panels(len(cases), columns, height=3.2 if columns < 3 else 2.9)
+    for axis, case in zip(axes, cases):
+        draw_case(axis, case, results[case])
+    if columns == 1:
+        style.legend_beside(axes[0], **legend_entries(axes[0]))
+    elif one_legend_will_do(axes):
+        style.legend_below(figure, axes, columns=5)
+    else:
+        for axis in axes:
+            style.legend_above(axis, columns=2 if columns == 2 else 1, **legend_entries(axis))
     figure.suptitle(cases[0].name, fontsize=9)
-    figure.tight_layout()
-    picture = io.BytesIO()
-    figure.savefig(picture, dpi=80)
-    plt.close(figure)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    Image.open(picture).convert("RGB").quantize(24).save(path, optimize=True)  # a few kB
+    style.save(figure, path, colours=32)

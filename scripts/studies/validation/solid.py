@@ -93,7 +93,8 @@ def viscous_wall(run):
 
 def viscous_line(run):
     _, y, u, _ = profile_times(run.profile["y"])
-    return (y, u[-1]), (y, viscous_layers(y, surface(run)))
+    fine = numpy.linspace(0, 1, 201)
+    return (y, u[-1]), (fine, viscous_layers(fine, surface(run)))
 
 
 # S4
@@ -135,7 +136,8 @@ def wave_line(a, b):
         t, s, u, v = profile_times(run.profile[b])
         f = u if a == "x" else v
         found = [2 * f_t @ numpy.sin(2 * math.pi * s) / len(s) for f_t in f]
-        return (t, found), (t, exact.shear_wave(t, 1.5))
+        fine = numpy.linspace(0, t[-1], 101)
+        return (t, found), (fine, exact.shear_wave(fine, 1.5))
     return line
 
 

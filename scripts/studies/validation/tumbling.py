@@ -95,7 +95,7 @@ LONG = Case(
      after_three("period of the membrane over that in this box", lambda run: when(1080, gone_round)(run) / (3 * period_in(LONG_BOX)), .03, 1),
      Measure("after three revolutions: change of volume", lambda run: float(abs(run.bodies.volume[-1, 0] / run.bodies.volume[0, 0] - 1)),
              {"fast": 1e-6}, "goal")),
-    lambda run: ((strain(run), deformation(run)), None), ("shear x time", "D"))
+    lambda run: ((strain(run), deformation(run)), ([4, strain(run)[-1]], [STEADY, STEADY])), ("shear x time", "D"))
 
 
 # Inside 50 times as viscous, the elastic stress of the membrane a part of that: a drop without tension, which is exact.
