@@ -26,10 +26,10 @@ SUBJECTS = {
     "F4": ("Fluid between two plates oscillates, driven by a body force or by the upper plate.",
            "The exact periodic states: Womersley's flow between plates, and Stokes' second problem with two plates."),
     "F6": ("The lid-driven cavity at Re = 100, 400 and 1000 in steady state.",
-           "Our own solutions by Newton's method on 2-D grids with Richardson extrapolation (tests/reference/cavity_re100.csv and others); the tolerances "
+           "Steady solutions by Newton's method on 2-D grids with Richardson extrapolation (tests/reference/cavity_re100.csv and others); the tolerances "
            "are the error of the table of Ghia, Ghia and Shin (J. Comput. Phys. 48, 1982)."),
     "F7": ("Two thin shear layers in a periodic box, tanh profiles of slope 30 with viscosity 1e-3, roll up into one vortex each.",
-           "Our own pseudo-spectral solution (tests/reference/double_shear_layer.csv)."),
+           "A pseudo-spectral solution (tests/reference/double_shear_layer.csv)."),
     "S1": ("The upper wall oscillates over a layer of fluid, below which a soft solid layer sticks to the lower wall (set-up of Sugiyama et al., J. Comput. Phys. 230, "
            "2011). The last period is compared.",
            "The exact solution, which is linear at any amplitude."),
@@ -48,7 +48,7 @@ SUBJECTS = {
     "S9": ("A slightly stretched disc in fluid of low viscosity oscillates after its release.",
            "The exact linear transient (tests/reference/ringing_disc.csv, ringing_disc_thin.csv)."),
     "S10": ("The lid-driven cavity carries a soft disc around its vortex and past the lid (set-up of Sugiyama et al., J. Comput. Phys. 230, 2011).",
-            "Our own finite-element immersed-boundary solution (tests/reference/soft_disc_cavity.csv), which agrees with the published path within .002."),
+            "A solution by the finite-element immersed-boundary method (tests/reference/soft_disc_cavity.csv), which agrees with the published path within .002."),
     "S11": ("A body force drives the flow through a round tube with an elastic wall until it is steady.",
             "Poiseuille's flow rate, because the wall of the exact solution is at rest."),
     "S12": ("Pairs of runs of which one is changed in a way that must have no effect: mirrored, turned by 90 degrees, with a body without stress. In addition, a sheared disc must recover "
