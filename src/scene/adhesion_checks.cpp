@@ -96,7 +96,7 @@ std::string check_pair(const Config &config, const AdhesionPair &pair) {
                                            config.species[pair.second].material().attached);
   const std::string region = option_of(pair, pair.region.file.path.empty() ? "region" : "region_file");
   if (!pair.to_wall() && !on_grid && pair.region.is_given())
-    return region + ": has a meaning only with a wall, or a species that is rigid or attached";
+    return region + ": applies only with a wall, or a species that is rigid or attached";
   if (on_grid && pair.law.reach > foot_reach * shortest)
     return option_of(pair, "reach") + ": " + to_text(pair.law.reach) + " is more than " + std::to_string(foot_reach) +
            " cells, as far as surfaces on the grid are looked for; accepted: at most " + to_text(foot_reach * shortest);

@@ -24,7 +24,7 @@ from eulastic import Run  # noqa: E402
 FILES = "series.csv", "adhesion_bonds.csv", "adhesion_events.csv"
 BOX = ("-grid_cells 24,16,16 -grid_length 12,8,8 -boundary_y wall -fluid_viscosity 1.2 -species cell -cell_shape sphere -cell_radius 1.4 "
        "-cell_shear_modulus .05 -cell_placement list").split()
-SHEAR = "-initial_velocity couette -wall_ymax_velocity .02,0,0".split()
+SHEAR = "-initial_velocity couette -boundary_ymax_velocity .02,0,0".split()
 
 
 def pair(name, **options):
@@ -111,7 +111,7 @@ class Adhesion(SceneCase):
         """Receptors go with them, in shear that carries six discs around a periodic box, with bonds to walls and to each other."""
         file = self.room / "discs.csv"
         file.write_text("x,y,z\n" + "".join(f"{1.2 + 2 * n},{1.2 + 1.6 * (n % 2)},0\n" for n in range(6)))
-        words = [*("-grid_cells 48,16,1 -grid_length 12,4,1 -boundary_y wall -wall_ymax_velocity .2,0,0 -initial_velocity couette "
+        words = [*("-grid_cells 48,16,1 -grid_length 12,4,1 -boundary_y wall -boundary_ymax_velocity .2,0,0 -initial_velocity couette "
                    "-fluid_viscosity 1.2 -species disc -disc_shape sphere -disc_radius .9 -disc_shear_modulus .2 -disc_placement list "
                    "-adhesion disc-wall,disc-disc -time_step .25 -time_end 100 -series_interval 10 -disc_positions").split(), file,
                  *pair("disc_wall", reach=.4, rate_off=.05, reactive_compliance=30), *pair("disc_disc", reach=.8, rate_off=.02)]
@@ -129,8 +129,8 @@ class Adhesion(SceneCase):
         """A body that comes in has receptors and binds; one that leaves takes its bonds with it. The same on any ranks and after a
         restart."""
         words = [*("-grid_cells 64,16,1 -grid_length 8,2,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax outflow "
-                   "-inflow_xmin_velocity 1 -inflow_xmin_profile developed -initial_velocity poiseuille -initial_velocity_amplitude 1.5 "
-                   "-inflow_xmin_feeder 2.5 -fluid_viscosity .5 -species disc -disc_shape sphere -disc_radius .35 -disc_centre 1.2,.5,0 "
+                   "-boundary_xmin_velocity 1 -boundary_xmin_profile developed -initial_velocity poiseuille -initial_velocity_amplitude 1.5 "
+                   "-boundary_xmin_generator_length 2.5 -fluid_viscosity .5 -species disc -disc_shape sphere -disc_radius .35 -disc_centre 1.2,.5,0 "
                    "-disc_shear_modulus 4 -interface_scheme plic -adhesion disc-wall -adhesion_disc_wall_region 4,0,0,8,2,1 -time_end 12 "
                    "-time_step .01 -series_interval .2").split(),
                  *pair("disc_wall", density=20, reach=.4, rate_on=4, rate_off=4, bond_stiffness=.001)]
