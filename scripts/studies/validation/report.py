@@ -102,7 +102,8 @@ def draw_case(axis, case, results):
         mine, reference = case.curve(runs if case.whole_curve else runs[key])
         colour, dashes, mark = style.METHODS[setting.label]
         if labels.count(setting.label) > 1:  # grids of one method: a colour each
-            colour, dashes = style.COLOURS[n % len(style.COLOURS)], style.DASHES[n % len(style.DASHES)]
+            free = [c for c in style.COLOURS if c not in {style.METHODS[label][0] for label in labels if label != setting.label}]
+            colour, dashes = free[n % len(free)], style.DASHES[n % len(style.DASHES)]
         at = "" if case.whole_curve else f", {name_of(key)}"
         axis.plot(*mine, color=colour, ls=dashes, marker=mark if len(mine[0]) < 10 else "", ms=4, label=setting.label + at)
         if reference is not None and not any(same_curve(known, reference) for known in drawn):
@@ -122,10 +123,10 @@ def legend_entries(axis):
 
 
 def one_legend_will_do(axes):
-    """Whether no two labels of these axes look alike."""
+    """Whether no two labels of these axes look alike, but for references."""
     looks = {}
     for axis in axes:
-        for line in axis.lines:
+        for line in (line for line in axis.lines if not line.get_label().startswith("reference")):
             looks.setdefault((line.get_color(), line.get_linestyle(), line.get_marker()), set()).add(line.get_label())
     return all(len(labels) == 1 for labels in looks.values())
 
