@@ -53,7 +53,7 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
                     ", which volume crosses; accepted: bodies that stay further inside, or a longer box";
   if (held < 0 && found[3] > 0) PetscCall(take_out_boxed(leaving));
   if (held < 0 && found[1] > 0) PetscCall(take_out_bodies(true));
-  if (held < 0 && found[2] > 0 && flow_.now.travel == 0) PetscCall(take_out_bodies(false));  // labels are new
+  if (held < 0 && found[2] > 0 && flow_.now.travel_since_labels == 0) PetscCall(take_out_bodies(false));  // labels are new
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,4 @@
-// One grammar for texts of numbers: what is read, and the line that says what is wrong.
+// The grammar for texts of numbers: accepted input, and error messages of one line.
 #include "base/number_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(NumberRows, OneLineSaysFileLineAndWhatIsExpected) {
   EXPECT_EQ(wrong_with(std::string("\xFF\xFE\x30\0,\0", 6)), "t.csv line 1: \"??0?\" is not a number" + end);
 }
 
-// A decimal comma would give more numbers, and a number with its unit be a header.
+// A decimal comma would give additional numbers, and a number with a unit might be taken for a header.
 TEST(NumberRows, NoNumberIsTakenForAnother) {
   EXPECT_NE(wrong_with("1,5;2,5;3,5\n", list).find("\"1,5\" is not a number"), std::string::npos);
   EXPECT_NE(wrong_with("1,5 2,5 3,5\n", list).find("\"5 2\" is not a number"), std::string::npos);
@@ -74,7 +74,7 @@ TEST(NumberRows, ACommentLineNamesANumber) {
     EXPECT_EQ(read(std::string(line) + "\n0,1\n", &period), "") << line;
     EXPECT_EQ(period, 0.8) << line;
     EXPECT_EQ(read(std::string("0,1\n") + line, &period), "") << line;
-    EXPECT_EQ(wrong_with(std::string(line) + "\n0,1\n"), "") << line;  // of no meaning in other texts
+    EXPECT_EQ(wrong_with(std::string(line) + "\n0,1\n"), "") << line;  // without a meaning in other texts
   }
   double period = 0;
   EXPECT_EQ(read("# periodic\n# the period is 3\n0,1 # period 4\n", &period), "");

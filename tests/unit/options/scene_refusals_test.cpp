@@ -1,4 +1,5 @@
-// Sides and rigid bodies that do not make a scene are refused in one line that names the option and what is accepted.
+// Boundaries and rigid bodies that do not make a valid scene are refused in one line that names the option and what is
+// accepted.
 #include "support/files.hpp"
 #include "support/refusals.hpp"
 
