@@ -108,7 +108,7 @@ def draw_case(axis, case, results):
         axis.plot(*mine, color=colour, ls=dashes, marker=mark if len(mine[0]) < 10 else "", ms=4, label=setting.label + at)
         if reference is not None and not any(same_curve(known, reference) for known in drawn):
             drawn.append(reference)
-            draw_reference(axis, reference, "reference" + (f", {setting.label}" if len(drawn) > 1 else ""))
+            draw_reference(axis, reference, "reference")
     axis.set(xlabel=case.axes[0], ylabel=textwrap.fill(case.axes[1], 30), **case.scales)
     if axis.get_xscale() == "log":
         axis.set_xticks(axis.lines[0].get_xdata(), [f"{x:g}" for x in axis.lines[0].get_xdata()])
@@ -117,16 +117,17 @@ def draw_case(axis, case, results):
 
 
 def legend_entries(axis):
-    """Handles and labels, the references last."""
-    entries = sorted(zip(*axis.get_legend_handles_labels()), key=lambda entry: entry[1].startswith("reference"))
-    return dict(zip(("handles", "labels"), zip(*entries)))
+    """Handles and labels, each label once, the reference last."""
+    entries = dict(zip(*reversed(axis.get_legend_handles_labels())))
+    labels = sorted(entries, key=lambda label: label == "reference")
+    return {"handles": [entries[label] for label in labels], "labels": labels}
 
 
 def one_legend_will_do(axes):
-    """Whether no two labels of these axes look alike, but for references."""
+    """Whether no two labels of these axes look alike."""
     looks = {}
     for axis in axes:
-        for line in (line for line in axis.lines if not line.get_label().startswith("reference")):
+        for line in axis.lines:
             looks.setdefault((line.get_color(), line.get_linestyle(), line.get_marker()), set()).add(line.get_label())
     return all(len(labels) == 1 for labels in looks.values())
 
