@@ -81,7 +81,7 @@ public:
       row_.push_back(value);
     }
     if (format_.counted && rows_ == 0 && count_line_ == 0 && row_.size() == 1) {
-      if (!(row_[0] >= 0 && row_[0] == std::floor(row_[0]))) return quoted(items[0]) + " is no number of rows";
+      if (!(row_[0] >= 0 && row_[0] == std::floor(row_[0]))) return quoted(items[0]) + " is not a number of rows";
       count_line_ = number;
       count_ = row_[0];
       return {};
@@ -100,7 +100,7 @@ public:
     double value;
     if (named_ || !read_number(trim(comment.substr(format_.named.size())), &value) || !(value > 0) ||
         !std::isfinite(value))
-      return quoted(comment) + (named_ ? " comes a second time" : " names no number > 0") + "; accepted: one line # " +
+      return quoted(comment) + (named_ ? " is repeated" : " gives no number > 0") + "; accepted: one line # " +
              format_.named + " T with a number T > 0, or other comments";
     *named = value;
     named_ = true;

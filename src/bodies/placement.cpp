@@ -48,10 +48,10 @@ std::string why_no_lumen(const SpeciesSpec &spec, const DomainShape &grid, const
 // Returns why a body cannot be at `place`, or an empty string.
 std::string why_not(const SpeciesSpec &spec, const Surface &surface, const DomainShape &grid, const BodyPlace &place) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
-  if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "turns only about z in 2-D";
+  if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "rotates only about z in 2-D";
   const bool may_cross = spec.shape == Shape::cylinder || is_attached(spec.shape);
   if (may_cross && place.orientation != Real3{})
-    return "cannot be turned: cylinders, slabs and tubes take an axis, no orientation";
+    return "cannot be rotated: cylinders, slabs and tubes have an axis instead of an orientation";
   if (is_tube(spec.shape)) return why_no_lumen(spec, grid, place.centre);
   for (int d = 0; d < dimension; ++d) {
     const double centre = place.centre[d], length = grid.length[d], bound = surface.bounding_radius();

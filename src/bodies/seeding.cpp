@@ -212,8 +212,8 @@ std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, con
   const double body = shape_volume(spec, dimension);
   const double wanted = spec.number >= 0 ? double(spec.number) : std::round(spec.hematocrit * region.volume() / body);
   if (!(wanted <= most_bodies))
-    return "-" + spec.name + (spec.number >= 0 ? "_count" : "_hematocrit") +
-           ": more bodies than can be counted; accepted: at most " + std::to_string(most_bodies) + " bodies";
+    return "-" + spec.name + (spec.number >= 0 ? "_count" : "_hematocrit") + ": too many bodies; accepted: at most " +
+           std::to_string(most_bodies) + " bodies";
   const std::size_t count = static_cast<std::size_t>(wanted);
 
   std::vector<ConvexBody> shapes;

@@ -17,7 +17,7 @@ enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab, tube, constrict
 
 /// Whether a shape is a vessel wall: infinite and anchored to the boundaries.
 constexpr bool is_tube(Shape shape) { return shape == Shape::tube || shape == Shape::constricted_tube; }
-/// Whether bodies of a shape are anchored unless -NAME_attached says otherwise.
+/// Whether bodies of a shape are anchored unless -NAME_anchored says otherwise.
 constexpr bool is_attached(Shape shape) { return shape == Shape::slab || is_tube(shape); }
 enum class Placement { one, list, lattice, random };
 /// How bodies of one species meet: each in a box of its own, so that they never merge, or all in one phase of the grid.

@@ -64,8 +64,9 @@ PetscErrorCode Feeders::check_lumen() const {
                              flow_.domain.comm()));
   for (std::size_t s = 0; s < stretches_.size(); ++s)
     if (change[s] > same)
-      flow_.crowded = std::string("-inflow_") + "xyz"[stretches_[s].d] + (stretches_[s].high ? "max" : "min") +
-                      "_feeder: rigid bodies change along it; accepted: a stretch along which the lumen is the same";
+      flow_.crowded =
+          std::string("-boundary_") + "xyz"[stretches_[s].d] + (stretches_[s].high ? "max" : "min") +
+          "_generator_length: the lumen changes along the inlet generator; accepted: a stretch with a constant lumen";
   PetscFunctionReturn(0);
 }
 

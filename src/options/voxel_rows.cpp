@@ -21,10 +21,10 @@ void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
   rows.boolean("voxels_invert", voxels.invert, "exchange solid and fluid of the file, for a mask of a lumen");
 }
 
-void add_attached_row(Rows &rows, SpeciesSpec &spec) {
+void add_anchored_row(Rows &rows, SpeciesSpec &spec) {
   bool unused = false;
   Option &row = rows.boolean(
-      "attached", unused,
+      "anchored", unused,
       "whether the body is anchored, a wall that hardly moves (slab, tube, vessel): B is extrapolated linearly, with "
       "second order at rest");
   row.default_note = "true for slab and tubes, else false";

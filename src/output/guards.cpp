@@ -48,7 +48,7 @@ Stop crowded(const Solver &solver) {
 
 Guards::Guards(const Config &config) : control_(config.guard) {
   const PressureKind pressure = config.method.pressure;
-  pressure_advice_ = pressure == PressureKind::acm   ? "raise -acm_sweeps_max, lower -acm_tolerance or -time_step"
+  pressure_advice_ = pressure == PressureKind::acm   ? "raise -acm_iterations_max, lower -acm_tolerance or -time_step"
                      : pressure == PressureKind::ksp ? "lower -pressure_ksp_rtol or -time_step"
                                                      : "lower -time_step";
 }
@@ -94,7 +94,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   auto find = place_of_speed;
   if (beyond(m.energy_made, control_.energy_growth)) {
     what = text(
-        "the run has made energy of its own, %.3g of what it held and was supplied with meanwhile, above "
+        "the numerics have generated energy, %.3g of what the run held and was supplied with meanwhile, above "
         "-guard_energy_growth %g; lower -time_step (%.3g now), more -grid_cells, or -series_interval if rows are far "
         "apart",
         m.energy_made, control_.energy_growth, state.dt);
@@ -105,7 +105,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   } else if (beyond(m.mach, control_.mach)) {
     what = text(
         "Mach number |v|/beta = %.3g of artificial compressibility is above -guard_mach %g; lower -time_step "
-        "(%.3g now) or raise -acm_sweeps_max",
+        "(%.3g now) or raise -acm_iterations_max",
         m.mach, control_.mach, state.dt);
   } else if (beyond(m.resolved_drift, control_.volume_drift)) {
     what = text(

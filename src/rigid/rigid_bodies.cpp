@@ -438,8 +438,8 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
   Int3 first{};
   for (int d = 0; d < dimension; ++d) {
     if (ends[d] == 0 || -ends[3 + d] == N[d] - 1)
-      *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + " reaches the sides of the box along " + "xyz"[d] +
-               ", and what moves there needs fluid around it; accepted: a cell of it, or no motion";
+      *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + " reaches the boundaries of the box along " +
+               "xyz"[d] + ", and a body that moves needs fluid around it; accepted: a cell of fluid, or no motion";
     first[d] = ends[d] - LevelMap::margin;
     box.size[d] = -ends[3 + d] - ends[d] + 1 + 2 * LevelMap::margin;
     box.spacing[d] = domain_.spacing()[d];
@@ -462,9 +462,9 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
   const double cells = std::accumulate(box.fraction.begin(), box.fraction.end(), 0.0),
                found_cells = mass->volume / domain_.cell_volume();
   if (std::fabs(found_cells - cells) > most_lost * cells) {
-    char text[160];
+    char text[200];
     std::snprintf(text, sizeof text,
-                  " moves and must be three cells thick to be seen: it would have %.4g cells instead of %.4g; "
+                  " moves and must be three cells thick to be resolved: it would have %.4g cells instead of %.4g; "
                   "accepted: a finer grid, or no motion",
                   found_cells, cells);
     *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + text;

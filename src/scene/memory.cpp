@@ -116,7 +116,7 @@ std::string too_little(int ranks, double needed, double limit, double share) {
   char text[320];
   std::snprintf(text, sizeof text,
                 "-grid_cells: the fields need about %.4g GB on a node (%d ranks), which has %.4g GB; accepted: fewer "
-                "cells, more nodes, or another -guard_memory (%g now, 0 = off)",
+                "cells, more nodes, or another -guard_memory (%g now; off disables the check)",
                 1e-9 * needed, ranks, 1e-9 * limit, share);
   return text;
 }

@@ -85,7 +85,7 @@ def write_table(scenes, path):
     failed = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
     failed += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
     count = sum(int(row.split(" | ")[column]) for row in rows.values() for column in (2, 4))
-    lines = ["| scenes | method | stable | of them reported | failed | energy | phi beyond 0, 1 | volume | det B | largest stretch | B forgotten | from stretch |",
+    lines = ["| scenes | method | stable | of these yellow | failed | energy | phi outside 0 ... 1 | volume | det B | largest stretch | B unresolved | from stretch |",
              "|---|---|---|---|---|---|---|---|---|---|---|---|", *rows.values(), "",
              f"{count} scenes at the automatic time step (up to 1.2 of it), {len(failed)} failed" + (":" if failed else "."),
              *[""] * bool(failed), *failed]

@@ -1,4 +1,4 @@
-"""What a case of the validation is: entries of data; how they are run and judged is in runner.py and report.py."""
+"""The data of a case of the validation; runner.py runs cases, and report.py judges them."""
 import dataclasses
 import pathlib
 from typing import Callable, Optional

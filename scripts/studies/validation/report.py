@@ -1,17 +1,11 @@
-"""Judges the runs of the cases: the rows, docs/validation.md, the pages of docs/validation/ and one plot per name."""
-import csv
+"""Judges the runs of the cases: the rows of the tables, and one plot per name. pages.py writes the pages."""
 import math
-import re
 import textwrap
 
 import numpy
 from eulastic import figure_style as style
 
-from .notes import NOTES
-
-HEADER = ["case", "measure", "method, solver", "at", "reference", "ours", "error", "tolerance", "tolerance from",
-          "errors, coarse to fine (order)", "verdict"]
-WORDS = {True: "pass", False: "**FAIL**", None: "reported", "misses": "misses, as documented"}
+from .pages import HEADER, WORDS, rows_of, updated, write_page  # noqa: F401
 
 
 def name_of(key):
@@ -52,7 +46,7 @@ def judge(case, setting, runs, measure):
              percent(error(ours)), shown_limit, why, shown, WORDS[verdict]]]
     least = measure.order.get(setting.method)
     if least is not None and len(ladder) > 1:
-        verdict, asked, why = bool(order >= least), f"at least {least}", "second order, measured on two grids"
+        verdict, asked, why = bool(order >= least), f"at least {least}", "expected order 2, measured on the two finest grids"
         kept, reason = measure.order_misses.get(setting.method, (None, ""))
         if kept is not None and not verdict:
             verdict = "misses" if order >= kept else False
@@ -68,11 +62,6 @@ def observed_order(ladder):
         return None
     (n, e), (m, f) = ladder[-2:]
     return math.log(e / f) / math.log(m / n) if e > 0 and f > 0 else math.nan
-
-
-def table(rows):
-    lines = ["| " + " | ".join(HEADER) + " |", "|" + "---|" * len(HEADER)]
-    return "\n".join(lines + ["| " + " | ".join(row[c].replace("|", "\\|") for c in HEADER) + " |" for row in rows])
 
 
 def draw_reference(axis, reference, label):
@@ -147,125 +136,3 @@ def draw(cases, results, path):
             style.legend_above(axis, columns=2 if columns == 2 else 1, **legend_entries(axis))
     figure.suptitle(cases[0].name, fontsize=9)
     style.save(figure, path, colours=32)
-
-
-PAGE = """# Validation
-
-Written by `scripts/validate`; do not edit. This page is for readers who want to know how accurate the program is: it
-compares results with exact solutions and published references. The script runs every case below from the files of
-options/ and exits with 1 if a row fails. Finished runs are kept in build/validation, and an interrupted run is continued.
-A row that misses its tolerance for a known reason has another bound, "kept", and fails beyond that.
-
-    scripts/validate              # all cases: hours
-    scripts/validate --quick      # a short form of every reference, part of scripts/test --full
-    scripts/validate --only S6
-    scripts/validate --only S6 --update       # also writes its rows into these pages
-
-The table below has one row for each case. The pages of the families have all measures with their references, errors and
-tolerances, the known misses and limits, and the pictures:
-
-{families}
-
-[validation/rows.csv](validation/rows.csv) has all rows as one table. The cases, with their options, formulas and
-sources, are in scripts/studies/validation.
-
-{counts}
-
-{made}{summary}
-"""
-
-FAMILY = """# Validation: {title}
-
-Written by `scripts/validate`; do not edit. This page has all measures of the family; [validation.md](../validation.md)
-describes the script and has the summary of all cases.
-
-"at" is the finest grid: cells in a direction; in S8 cells per radius and the size of the box in radii. The errors on
-coarser grids precede that of the finest one, with the observed order. Errors in % are relative. A tolerance follows from
-theory (the formula is given; "twice" is a factor for neglected terms), from the error of the reference, or it is "asked
-for", that is, set without a theory. A tolerance that depends on the grid is that of the grid in the row. Rows without a
-tolerance are reported, not judged: results of the classic method for comparison with the fast one.
-
-In the pictures a broad grey line is an exact solution or a known limit, and circles are published values, with their errors
-where these are published. The other lines are the finest run of each method and pressure solver; the number behind them is "at".
-
-{table}
-
-## Known misses and limits
-
-{notes}
-{plots}"""
-
-# Page below validation/: (title, whether a case belongs to it).
-FAMILIES = {
-    "flow": ("flow without bodies", lambda name: name.startswith("F")),
-    "solids": ("elastic solids", lambda name: name[0] in "RL" or name[0] == "S" and int(name[1:]) <= 12),
-    "membranes": ("viscosity contrast, drops and membranes", lambda name: name.startswith("V")),
-    "vessels": ("rigid bodies, vessels, inlets and outlets", lambda name: name[0] == "S" and int(name[1:]) > 12),
-}
-
-
-OF_CASES = re.compile(r"^- ([A-Z]+\d+(?:, [A-Z]+\d+)*): (Made with .*)$", re.M)
-
-
-def rows_file(page):
-    return page.parent / "validation/rows.csv"
-
-
-def rows_of(page):
-    """The rows that write_page() has written beside the path `page`."""
-    with rows_file(page).open(newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def updated(page, rows, made, order):
-    """Returns the rows of the path `page` with those of the cases in `rows` in place of theirs, and {case: with what it was made}
-    for all that were updated; `order`: names of all cases."""
-    new = {row["case"] for row in rows}
-    whole = [row for row in rows_of(page) if row["case"] not in new] + rows
-    known = {name: text for names, text in OF_CASES.findall(page.read_text()) for name in names.split(", ")}
-    since = {**known, **{name: made for name in new}}
-    return sorted(whole, key=lambda row: order.index(row["case"])), {name: since[name] for name in order if name in since}
-
-
-def summary(rows, titles):
-    """One row per case: how many of its measures passed, missed as documented, failed, or are reported."""
-    lines = ["| case | what | passed | missed as documented | failed | reported | page |", "|---|---|---|---|---|---|---|"]
-    for name in dict.fromkeys(row["case"] for row in rows):
-        verdicts = [row["verdict"] for row in rows if row["case"] == name]
-        numbers = " | ".join(str(verdicts.count(WORDS[word]) or "") for word in (True, "misses", False, None))
-        page = next(page for page, (_, belongs) in FAMILIES.items() if belongs(name))
-        kinds = titles.get(name, "").split("; ")
-        what = "; ".join(kinds) if len(kinds) < 3 else f"{kinds[0]}; {len(kinds) - 1} more"
-        lines.append(f"| {name} | {what} | {numbers} | [{page}](validation/{page}.md) |")
-    return "\n".join(lines)
-
-
-def write_family(rows, titles, pictures, page, path):
-    title, belongs = FAMILIES[page]
-    plots = "".join(f"\n![{titles[name]}](../images/{picture.name})\n\n*{name}: {titles[name]}*\n"
-                    for name, picture in pictures.items() if belongs(name))
-    notes = "\n".join(f"- {name}: {text}" for name, text in NOTES.items() if name in titles and belongs(name)) or "None."
-    path.write_text(FAMILY.format(title=title, table=table([row for row in rows if belongs(row["case"])]), notes=notes, plots=plots))
-
-
-def write_page(rows, titles, pictures, path, made=None):
-    """The summary in `path`, a page for each family that has rows, and rows.csv, in the folder validation/ beside it.
-    `made`: {case: with what}, of those not made with the page."""
-    rows_file(path).parent.mkdir(parents=True, exist_ok=True)
-    with rows_file(path).open("w", newline="") as file:
-        writer = csv.DictWriter(file, HEADER, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    counts = ", ".join(f"{sum(row['verdict'] == word for row in rows)} {name}" for word, name in
-                       ((WORDS[True], "passed"), (WORDS["misses"], "missed as documented"), (WORDS[False], "failed"),
-                        (WORDS[None], "reported")))
-    cases = {}
-    for name, text in (made or {}).items():
-        cases.setdefault(text, []).append(name)
-    since = "".join(f"- {', '.join(names)}: {text}\n" for text, names in cases.items())
-    since = f"The rows of these cases are newer than the others:\n\n{since}\n" if since else ""
-    shown = [page for page, (_, belongs) in FAMILIES.items() if any(belongs(row["case"]) for row in rows)]
-    for page in shown:
-        write_family(rows, titles, pictures, page, rows_file(path).with_name(f"{page}.md"))
-    families = "\n".join(f"- [{FAMILIES[page][0]}](validation/{page}.md)" for page in shown)
-    path.write_text(PAGE.format(families=families, counts=counts + ".", made=since, summary=summary(rows, titles)))

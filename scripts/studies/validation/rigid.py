@@ -26,9 +26,9 @@ def array(fraction, settings, quick):
         return {"grid_cells": f"{cells},{cells},{cells}", "grain_radius": radius, "time_end": .6 if fraction > .1 else 1.5, "snapshot_interval": 0}
     return Case("S13", f"Cubic array of rigid spheres, volume fraction {fraction}", "sphere_array", options, settings, quick,
                 (Measure(f"fraction {fraction}: drag K", lambda run: 1 / (6 * math.pi * radius * bulk(run)),
-                         {"fast": lambda n: .01 * max(1, (16 / n)**2)}, "asked for: 1 % at 16 cells per radius; second order",
+                         {"fast": lambda n: .01 * max(1, (16 / n)**2)}, "goal: 1 % at 16 cells per radius; second order",
                          ARRAY[fraction], True),
-                 Measure(f"fraction {fraction}: force on the sphere, of what drives the fluid", lambda run: float(
+                 Measure(f"fraction {fraction}: force on the sphere relative to the driving force", lambda run: float(
                      run.bodies.force[-1, 0, 0]) / (1 - fraction), {"fast": lambda n: .01 * max(1, (16 / n)**2)},
                          "the balance of momentum of the box", 1, True)),
                 lambda run: ((run.series.time, run.series.bulk_velocity_x), steady(run.series, 1 / (6 * math.pi * radius * ARRAY[fraction]))),
@@ -111,7 +111,7 @@ def pulse(run):
 
 def pulse_options(across, _):
     period = 2 * math.pi / FREQUENCY
-    return {**tube_options(across, _), "fluid_viscosity": VISCOSITY, "body_force_frequency": FREQUENCY, "time_end": PERIODS * period,
+    return {**tube_options(across, _), "fluid_viscosity": VISCOSITY, "body_force_angular_frequency": FREQUENCY, "time_end": PERIODS * period,
             "time_step": period / (2 * across), "series_interval": period / (2 * across)}
 
 
@@ -174,7 +174,7 @@ def step_options(n, _):
     path.parent.mkdir(exist_ok=True)
     y = numpy.clip(numpy.arange(n + 1) / n, .5, 1)
     path.write_text("\n".join(f"{u:.15g}" for u in n * numpy.diff(24 * (.75 * y**2 - y**3 / 3 - y / 2))) + "\n")
-    return {"grid_cells": f"{30 * n},{n},1", "grid_length": f"30,1,{1 / n}", "inflow_xmin_profile": path, "snapshot_interval": 400}
+    return {"grid_cells": f"{30 * n},{n},1", "grid_length": f"30,1,{1 / n}", "boundary_xmin_profile": path, "snapshot_interval": 400}
 
 
 def turns(run, row, beside):
@@ -191,8 +191,8 @@ def fork_options(n, _):
     path = ROOT / "build/bifurcation_steady.csv"
     path.parent.mkdir(exist_ok=True)
     path.write_text("time,value\n0,5\n360,5\n")
-    return {"grid_cells": f"{72 * n // 14},{48 * n // 14},{20 * n // 14}", "cell_count": 0, "inflow_xmin_feeder": 0,
-            "inflow_xmin_flow_rate": path, "time_end": 60, "snapshot_interval": 0}
+    return {"grid_cells": f"{72 * n // 14},{48 * n // 14},{20 * n // 14}", "cell_count": 0, "boundary_xmin_generator_length": 0,
+            "boundary_xmin_flow_rate": path, "time_end": 60, "snapshot_interval": 0}
 
 
 def step_line(row, beside, published):
@@ -207,7 +207,7 @@ def step_line(row, beside, published):
 
 def step_measure(what, row, beside, number):
     return Measure(what, lambda run: float(turns(run, row, beside)[number]), {"fast": lambda n: .02 * max(1, (80 / n)**2)},
-                   "asked for: 2 %, here at 80 cells; second order", STEP[what], True)
+                   "goal: 2 % at 80 cells; second order", STEP[what], True)
 
 
 CASES = (
@@ -221,36 +221,36 @@ CASES = (
     array(.027, fast_at((8,)), ()), array(.216, fast_at((8, 16)), fast_at((8,))),
     Case("S14", "Poiseuille flow in a rigid tube", "sphere_array", tube_options, fast_at((10, 20, 40)), fast_at((10, 20)),
          (Measure("flow rate", bulk, {"fast": lambda across: .01 * (20 / across)**1.8},
-                  "asked for: 1 % at 20 cells across, order 1.8", math.pi * (ACROSS / 2)**4 / 8, True, order={"fast": 1.8}),),
+                  "goal: 1 % at 20 cells across, order 1.8", math.pi * (ACROSS / 2)**4 / 8, True, order={"fast": 1.8}),),
          lambda run: ((run.series.time, run.series.bulk_velocity_x), startup_line(run.series.time[-1])), ("t", "mean velocity")),
-    Case("S15", "Cylinder turning in another one", "rotating_cylinder",
+    Case("S15", "Rotating cylinder inside a fixed one", "rotating_cylinder",
          lambda n, _: {"grid_cells": f"{n},{n},1", "snapshot_interval": 0}, fast_at((32, 64, 128)), fast_at((32, 64)),
-         (Measure("torque on the inner one", lambda run: float(run.bodies.torque[-1, 0, 2]), {"fast": .01},
-                  "asked for: 1 %", -TORQUE, True),
-          Measure("torque on the outer one", lambda run: float(run.bodies.torque[-1, 1, 2]), {"fast": .01},
-                  "asked for: 1 %", TORQUE, True)),
-         torque_line, ("t", "torque on the inner one from t = .1 on")),
+         (Measure("torque on the inner cylinder", lambda run: float(run.bodies.torque[-1, 0, 2]), {"fast": .01},
+                  "goal: 1 %", -TORQUE, True),
+          Measure("torque on the outer cylinder", lambda run: float(run.bodies.torque[-1, 1, 2]), {"fast": .01},
+                  "goal: 1 %", TORQUE, True)),
+         torque_line, ("t", "torque on the inner cylinder from t = .1 on")),
     Case("S16", "Cylinder in a channel, Re = 20", "cylinder_in_channel",
          lambda n, _: {"grid_cells": f"{22 * n},{41 * n // 10},1", "time_end": 8, "snapshot_interval": 0}, fast_at((10, 20, 40)),
          fast_at((10,)),
          (Measure("drag coefficient", lambda run: float(run.bodies.force[-1, 0, 0]) * 500,
-                  {"fast": lambda n: .01 * max(1, 40 / n)}, "asked for: 1 % at 40 cells in the diameter", 5.5795, True),
-          Measure("lift coefficient", lambda run: float(run.bodies.force[-1, 0, 1]) * 500, {}, "a fifth of a per cent of the drag",
+                  {"fast": lambda n: .01 * max(1, 40 / n)}, "goal: 1 % at 40 cells in the diameter", 5.5795, True),
+          Measure("lift coefficient", lambda run: float(run.bodies.force[-1, 0, 1]) * 500, {}, "reported only: the lift is a fifth of a per cent of the drag",
                   .01062, True)),
          lambda run: ((run.bodies.time[1:], 500 * run.bodies.force[1:, 0, 0]), steady(run.bodies, 5.5795)), ("t", "drag coefficient")),
     Case("S17", "Rigid tube from an inlet to an outlet", "sphere_array",
          lambda across, _: {**tube_options(across, _), "grid_cells": f"{24 * across // 20},{round(across / ACROSS)},{round(across / ACROSS)}",
                             "grid_length": f"{24 * across // 20 / round(across / ACROSS)},1,1", "body_force": "0,0,0",
-                            "boundary_xmin": "inflow", "boundary_xmax": "pressure", "inflow_xmin_profile": "developed",
-                            "inflow_xmin_flow_rate": .1, "probe_points": "0.3,0.513,0.487:0.6,0.513,0.487"},
+                            "boundary_xmin": "inflow", "boundary_xmax": "pressure", "boundary_xmin_profile": "developed",
+                            "boundary_xmin_flow_rate": .1, "probe_points": "0.3,0.513,0.487:0.6,0.513,0.487"},
          fast_at((10, 20, 40)), fast_at((10, 20)),
          (Measure("pressure gradient", gradient, {"fast": lambda across: .01 * (20 / across)**1.8},
-                  "asked for: 1 % at 20 cells across, order 1.8", EXACT_GRADIENT, True, order={"fast": 1.8}),),
+                  "goal: 1 % at 20 cells across, order 1.8", EXACT_GRADIENT, True, order={"fast": 1.8}),),
          gradient_line, ("cells across", "error of the pressure gradient, %"), whole_curve=True,
          scales={"xscale": "log", "yscale": "log"}),
     Case("S18", "Pulse in a rigid tube, Womersley number 5", "sphere_array", pulse_options, fast_at((10, 20, 40)), fast_at((10, 20)),
-         (Measure("amplitude and phase of the flow rate: error", lambda run: abs(pulse(run) / womersley_flow() - 1),
-                  {"fast": lambda across: .01 * (20 / across)**1.7}, "1 % at 20 cells across and 40 steps a period, second order in both",
+         (Measure("relative error of the complex amplitude of the flow rate", lambda run: abs(pulse(run) / womersley_flow() - 1),
+                  {"fast": lambda across: .01 * (20 / across)**1.7}, "goal: 1 % with 20 cells across and 40 steps per period; second order in both",
                   order={"fast": 1.7}),),
          lambda run: ((run.series.time, run.series.bulk_velocity_x),
                       (run.series.time, (womersley_flow() * numpy.exp(1j * FREQUENCY * run.series.time)).real)), ("t", "mean velocity")),
@@ -258,25 +258,25 @@ CASES = (
          fork_options,
          fast_at((14, 21, 28)), fast_at((14,)),
          (Measure("share of the upper outlet", lambda run: -float(run.series.flow_rate_ymax[-1]) / 5, {"fast": .05},
-                  "asked for: 5 % of the network's; the axes' lengths leave the rounding of the fork out", upper_share(), True),),
+                  "goal: 5 %; the network of resistances neglects the rounding of the fork", upper_share(), True),),
          lambda run: ((run.series.time[1:], -run.series.flow_rate_ymax[1:]), steady(run.series, 5 * upper_share())),
          ("t (µs)", "flow rate at the upper outlet (µm³/µs)"), scales={"ylim": (0, 2.5)}),
     Case("S20", "Cylinder in a channel, Re = 100", "cylinder_in_channel",
-         lambda n, _: {"grid_cells": f"{22 * n},{41 * n // 10},1", "inflow_xmin_velocity": 1, "time_end": 8, "snapshot_interval": 0,
+         lambda n, _: {"grid_cells": f"{22 * n},{41 * n // 10},1", "boundary_xmin_velocity": 1, "time_end": 8, "snapshot_interval": 0,
                        "series_interval": .005}, fast_at((20, 40)), (),
          (Measure("largest drag coefficient", lambda run: float(late(run)[1].max()), {"fast": lambda n: .01 * (40 / n)**2},
-                  "asked for: 1 % at 40 cells in the diameter", 3.23, True),
-          Measure("largest lift coefficient", lambda run: float(late(run)[2].max()), {}, "the reference is good to 1 %", 1, True),
-          Measure("Strouhal number", strouhal, {"fast": lambda n: .01 * (40 / n)**2}, "asked for: 1 % at 40 cells", .3, True)),
+                  "goal: 1 % at 40 cells in the diameter", 3.23, True),
+          Measure("largest lift coefficient", lambda run: float(late(run)[2].max()), {}, "reported only: the reference is known to 1 %", 1, True),
+          Measure("Strouhal number", strouhal, {"fast": lambda n: .01 * (40 / n)**2}, "goal: 1 % at 40 cells in the diameter", .3, True)),
          lambda run: ((run.bodies.time[1:], 20 * run.bodies.force[1:, 0, 1]), steady(run.bodies, 1)),
          ("t", "lift coefficient; published: its largest")),
     # Duetsch, Durst, Becker & Lienhart, J. Fluid Mech. 360, 1998, table 2
-    Case("S22", "Cylinder that swings in fluid at rest, Re = 100, Keulegan-Carpenter number 5", "oscillating_cylinder",
+    Case("S22", "Oscillating cylinder in fluid at rest, Re = 100, Keulegan-Carpenter number 5", "oscillating_cylinder",
          lambda n, _: {"grid_cells": f"{24 * n},{16 * n},1", "grid_length": "24,16,1", "time_end": 15, "snapshot_interval": 0},
          fast_at((10, 20, 40)), (),
          (Measure("drag coefficient", lambda run: float(swinging(run)[0]), {"fast": lambda n: .04 * max(1, 20 / n)},
-                  "asked for: 4 % from 20 cells in the diameter on", DRAG, True),
+                  "goal: 4 % from 20 cells in the diameter on", DRAG, True),
           Measure("coefficient of added mass", lambda run: float(swinging(run)[1]), {"fast": lambda n: .04 * max(1, 20 / n)},
-                  "asked for: 4 % from 20 cells in the diameter on", ADDED_MASS, True)),
+                  "goal: 4 % from 20 cells in the diameter on", ADDED_MASS, True)),
          swinging_line, ("t", "force in the last period; published fit")),
 )
