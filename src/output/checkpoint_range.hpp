@@ -13,6 +13,7 @@ namespace eulastic {
 /// All of these return nothing, or what is out of range, "time: -1; accepted: ...".
 std::string find_absurd_number(const CheckpointNumbers &numbers);
 std::string find_absurd_count(const std::string &name, const std::vector<long> &values);
+std::string find_absurd_count(const std::string &name, const std::vector<double> &values);
 /// `like`: of every body that has come in, the label of an earlier one; `placed`: bodies of the scene.
 std::string find_absurd_link(const std::vector<long> &like, int placed);
 /// Of one rank's share of the bodies: their cells, their first volumes, and their feeders (0 = none) of `feeders`.
@@ -20,6 +21,8 @@ std::string find_absurd_body(const std::vector<long> &cells, const std::vector<d
 std::string find_absurd_feeder(const std::vector<long> &inside, int feeders);
 /// Markers of membranes in a block of cells, packed as by SurfaceMarker::packed().
 std::string find_absurd_marker(const std::vector<double> &packed, const Extent &block, int bodies, int phases);
+/// Receptors on bodies of a scene with so many pairs that adhere, packed as by Receptor::packed().
+std::string find_absurd_receptor(const std::vector<double> &packed, int bodies, int pairs);
 /// Heads of bodies in boxes (FreeBodies::packed) on the domain of a scene with these bodies and phases.
 std::string find_absurd_box(const std::vector<double> &heads, const Box &domain, const BodyTracker &bodies,
                             const std::vector<Phase> &phases);

@@ -4,6 +4,7 @@
 // stops pays for finding the place.
 #pragma once
 
+#include "adhesion/bond_records.hpp"
 #include "base/petsc.hpp"
 #include "bodies/measures.hpp"
 #include "diagnostics/flow_measures.hpp"
@@ -37,6 +38,8 @@ struct Measured {
   std::vector<SurfaceLoad> surface_loads;  ///< of the others that bear loads
   std::vector<BodyMeasure> bodies;         ///< that this rank owns
   std::vector<SurfaceMeasure> surfaces;    ///< of the same bodies; empty without membranes
+  BondTotals bonds;                        ///< of the middle of the last step
+  std::vector<BodyBonds> body_bonds;       ///< of the bodies that this rank owns; empty without adhesion
   double volume_drift = 0;                 ///< of the body that has changed most
   double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start
   int drifting_body = 0;      ///< its label
