@@ -1,4 +1,4 @@
-// What a run with adhesion leaves of its bonds: adhesion.csv, adhesion_bonds.csv, adhesion_events.csv.
+// Output files of bonds: adhesion.csv, adhesion_bonds.csv, adhesion_events.csv.
 #pragma once
 
 #include "adhesion/adhesion.hpp"
@@ -12,7 +12,7 @@ public:
   struct Position {
     std::int64_t bodies = 0, bonds = 0, events = 0;
   };
-  /// Collective. In the directory of a run that goes on its files are cut back to `position`.
+  /// Collective. At a restart in the same directory its files are cut back to `position`.
   PetscErrorCode open(MPI_Comm comm, const std::string &directory, const Position &position);
   void moved_to(const std::string &directory);
   /// Collective. A row for every body with receptors, and one for every event since the last call.

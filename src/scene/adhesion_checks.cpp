@@ -43,9 +43,9 @@ std::string check_species_of(const Config &config, const AdhesionPair &pair) {
     return "-adhesion: the first species of " + pair.name + " needs " + needed;
   if (pair.to_wall() || needs(pair.second).empty()) return {};
   const SpeciesSpec &spec = config.species[pair.second];
-  if (spec.law == Law::rigid || spec.material().attached) return {};
+  if (spec.law == Law::rigid || spec.material().anchored) return {};
   return "-adhesion: the second species of " + pair.name + " needs " + needs(pair.second) +
-         ", or to be rigid or attached";
+         ", or to be rigid or anchored";
 }
 
 std::string check_pair(const Config &config, const AdhesionPair &pair) {
@@ -61,9 +61,9 @@ std::string check_pair(const Config &config, const AdhesionPair &pair) {
   for (int d = 0; d < (config.grid.cells[2] == 1 ? 2 : 3); ++d)
     shortest = std::min(shortest, config.grid.length[d] / config.grid.cells[d]);
   const bool on_grid = !pair.to_wall() && (config.species[pair.second].law == Law::rigid ||
-                                           config.species[pair.second].material().attached);
+                                           config.species[pair.second].material().anchored);
   if (!pair.to_wall() && !on_grid && pair.low[0] != -HUGE_VAL)
-    return option_of(pair, "region") + ": applies only with a wall, or a species that is rigid or attached";
+    return option_of(pair, "region") + ": applies only with a wall, or a species that is rigid or anchored";
   if (on_grid && pair.law.reach > foot_reach * shortest)
     return option_of(pair, "reach") + ": " + to_text(pair.law.reach) + " is more than " + std::to_string(foot_reach) +
            " cells, as far as surfaces on the grid are looked for; accepted: at most " + to_text(foot_reach * shortest);
@@ -79,7 +79,7 @@ std::string check_pair(const Config &config, const AdhesionPair &pair) {
 std::string check_adhesion(const Config &config) {
   for (const AdhesionPair &pair : config.adhesion.pairs)
     if (const std::string wrong = check_pair(config, pair); !wrong.empty()) return wrong;
-  if (!config.adhesion.pairs.empty() && has_feeders(config.sides))
+  if (!config.adhesion.pairs.empty() && has_inlet_generators(config.sides))
     return "-adhesion: bodies that an inlet generator lets in have no receptors; accepted: without "
            "-boundary_..._generator_length";
   return {};
