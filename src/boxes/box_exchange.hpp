@@ -77,7 +77,8 @@ private:
     int number;
     std::vector<Run> own, remote;  ///< of this rank's grid, of the others'
   };
-  /// Values from boxes of other ranks with one number: where they are in `received_`, and offsets in the grid's field.
+  /// Values from boxes of other ranks with one number: where they are in `received_`, and offsets in the grid's field,
+  /// ascending.
   struct Parcel {
     std::vector<PetscInt> slots, offsets;
   };

@@ -36,6 +36,8 @@ public:
   /// Updates the boxes after bodies have been added or removed on some ranks. Collective.
   PetscErrorCode refit();
   const FreeBodies &bodies() const { return bodies_; }
+  /// Of the body at a place in bodies().
+  std::vector<Receptor> &receptors(std::size_t body) { return bodies_.receptors(body); }
   /// The bodies of this rank at their own time, without velocity.
   std::vector<BodyInBox> list() const { return bodies_.list(); }
   /// Solid fraction of all bodies of every species in boxes, on the grid. Collective.

@@ -9,6 +9,7 @@
 #include "drops/surface_tension.hpp"
 #include "field/net_force.hpp"
 #include "field/phase.hpp"
+#include "field/receptor.hpp"
 #include "membranes/membrane.hpp"
 #include "solids/interface.hpp"
 #include "solids/solid_transport.hpp"
@@ -30,6 +31,7 @@ public:
     std::vector<SurfaceMarker> markers = {};  ///< of a membrane, their cells not wrapped around periodic sides
     WallFilm film = {};                       ///< the same: walls in the box
     ActiveSegments tension_faces = {};        ///< with surface tension: those that feel that or stress
+    std::vector<Receptor> receptors = {};     ///< of adhesion
     const ActiveSegments &forced() const {
       return phase.material.surface_tension > 0 ? tension_faces : phase.tensor.stressed;
     }
@@ -40,16 +42,19 @@ public:
 
   /// Adds a body to this rank: `phase` has material, rule and the owned cells of phi and B on `box`, which may be any
   /// block that holds the body.
-  PetscErrorCode add(int number, int species, const Box &box, Phase &&phase, std::vector<SurfaceMarker> &&markers = {});
+  PetscErrorCode add(int number, int species, const Box &box, Phase &&phase, std::vector<SurfaceMarker> &&markers = {},
+                     std::vector<Receptor> &&receptors = {});
   /// The number, the species, first cell and cells of a block around a body of this rank and how many markers it has,
-  /// then phi and the components of B of that block and the markers: all that add_packed() needs.
+  /// then phi and the components of B of that block, the markers and the receptors: all that add_packed() needs.
   std::vector<double> packed(std::size_t body) const;
   static constexpr int head = 9;  ///< numbers before phi
-  /// How many values a body with this head has after it; `centred`: all components of B live at centres.
+  /// How many values a body with this head has after it, before its receptors; `centred`: all components of B live at
+  /// centres.
   static std::size_t packed_values(const DomainShape &domain, bool centred, const double *head);
   /// Adds such a body; `like`: a phase of the grid with its material and rule.
   PetscErrorCode add_packed(const std::vector<double> &packed, const Phase &like);
-  /// Adds a copy of a body of this rank, displaced by so many cells; `like`: as of add_packed().
+  /// Adds a body like that of this rank with a number, so many cells away; its receptors are free. `like`: as of
+  /// add_packed().
   PetscErrorCode add_copy(int number, int copy, const Int3 &shift, const Phase &like);
   /// Gives every body of this rank to one of `ranks`, in their order; `species`: phases with materials and rules of
   /// all. Collective.
@@ -87,6 +92,10 @@ public:
   PetscErrorCode reset_unresolved(const std::vector<double> &trace, long *count);
 
   const std::vector<Body> &bodies() const noexcept { return bodies_; }
+  /// Of the body at a place in bodies().
+  std::vector<Receptor> &receptors(std::size_t body) { return bodies_[body].receptors; }
+  /// How often bodies have come, have gone or have got other boxes: the same on all ranks.
+  long fits() const noexcept { return fits_; }
   /// Adds energy and power of the surfaces that look() has seen; `samples`: of each membrane. `species`: phases with
   /// their materials. Collective.
   PetscErrorCode measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
@@ -177,6 +186,7 @@ private:
   };
   std::vector<Seen> seen_;
   bool fitted_ = false;  ///< the boxes are those that the exchange knows
+  long fits_ = 0;
 };
 
 /// work(place) for all bodies of this rank: where there are as many as threads, each of them all on one thread.

@@ -57,7 +57,7 @@ double *map_file(int file, double *from, double *to) {
 }  // namespace
 
 // Stencils access many pages at once; with huge pages, where the system has them, the addresses fit the TLB. Large
-// fields are not allocated on the heap, which would keep freed memory where MPI may have registered it.
+// fields are not allocated on the heap, because MPI may keep the heap from returning freed memory to the system.
 Field::Memory Field::allocate(std::size_t values) {
   constexpr std::size_t line = 64, huge = std::size_t{1} << 21;
   const std::size_t bytes = values * sizeof(double);

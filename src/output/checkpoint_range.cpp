@@ -44,6 +44,12 @@ std::string find_invalid_count(const std::string &name, const std::vector<long> 
   return {};
 }
 
+std::string find_invalid_count(const std::string &name, const std::vector<double> &values) {
+  for (const double value : values)
+    if (!is_within(value, 0, 1e9) || value != std::floor(value)) return invalid(name, value, "whole numbers from 0 on");
+  return {};
+}
+
 std::string find_invalid_link(const std::vector<long> &like, int placed) {
   for (std::size_t n = 0; n < like.size(); ++n)
     if (!is_within(double(like[n]), 1, placed + double(n)))
@@ -104,6 +110,20 @@ std::string find_invalid_marker(const std::vector<double> &packed, const Extent 
     if (part >= 3 && part < 6 && !is_within(value, block.begin[part - 3], block.end[part - 3] - 1))
       return invalid(name, value, "a cell of the box");
     if (part >= 6 && part < 9 && !is_within(value, -1, 1)) return invalid(name, value, "a position within its cell");
+  }
+  return {};
+}
+
+std::string find_invalid_receptor(const std::vector<double> &packed, int bodies, int pairs) {
+  const std::string name = "receptors_in_boxes";
+  for (std::size_t n = 0; n < packed.size(); n += Receptor::numbers) {
+    for (int part = 0; part < Receptor::numbers; ++part)
+      if (!std::isfinite(packed[n + part])) return invalid(name, packed[n + part], "a finite number");
+    const Receptor receptor = Receptor::unpacked(&packed[n]);
+    if (!is_within(receptor.partner, Receptor::none, bodies))
+      return invalid(name, receptor.partner, "the label of a body");
+    if (!is_within(receptor.other, 0, 1e9)) return invalid(name, receptor.other, "the number of a receptor");
+    if (!is_within(receptor.pair, 0, pairs - 1)) return invalid(name, receptor.pair, "the number of a pair");
   }
   return {};
 }

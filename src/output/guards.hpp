@@ -4,6 +4,7 @@
 // of a violation is searched only if the run stops.
 #pragma once
 
+#include "adhesion/bond_records.hpp"
 #include "base/petsc.hpp"
 #include "bodies/measures.hpp"
 #include "diagnostics/flow_measures.hpp"
@@ -37,6 +38,8 @@ struct Measured {
   std::vector<SurfaceLoad> surface_loads;  ///< of the others that bear loads
   std::vector<BodyMeasure> bodies;         ///< that this rank owns
   std::vector<SurfaceMeasure> surfaces;    ///< of the same bodies; empty without membranes
+  BondTotals bonds;                        ///< of the middle of the last step
+  std::vector<BodyBonds> body_bonds;       ///< of the bodies that this rank owns; empty without adhesion
   double volume_drift = 0;                 ///< largest of all bodies
   double resolved_drift = 0;               ///< largest of the bodies of at least a few cells at the start
   int drifting_body = 0;                   ///< its label

@@ -41,13 +41,15 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   const MPI_Comm comm = domain_->comm();
   directory_ = directory;
   PetscCall(series_.open(comm, directory + "/series.csv",
-                         series_columns(crossed_sides(config_.sides, *domain_), vessel_flows(config_, 0, {}, {})),
+                         series_columns(crossed_sides(config_.sides, *domain_), vessel_flows(config_, 0, {}, {}),
+                                        solver_->part<Adhesion>() != nullptr),
                          same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *domain_, directory, probes_time_, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
     const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.bears_load(); });
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes_, loads);
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5",
+                                                BodiesColumns{membranes_, loads, solver_->part<Adhesion>() != nullptr});
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
@@ -129,7 +131,7 @@ PetscErrorCode Outputs::write_due(bool last) {
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
   if (Adhesion *adhesion = solver_->part<Adhesion>()) {
-    if (probes) PetscCall(bond_files_.write_bodies(state.time, adhesion));
+    if (probes) PetscCall(bond_files_.write_events(adhesion));
     if (snapshot) PetscCall(bond_files_.write_bonds(state.time, *adhesion));
   }
   if (samples)

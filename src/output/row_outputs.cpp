@@ -1,4 +1,5 @@
 // Outputs: rows of series.csv and bodies.h5.
+#include "adhesion/adhesion.hpp"
 #include "base/events.hpp"
 #include "output/between.hpp"
 #include "output/outputs.hpp"
@@ -40,6 +41,10 @@ PetscErrorCode Outputs::look(Measured *measured) {
   // Loads follow from the pressure, which is half a step behind, as are the bodies that are measured first.
   if (!again && solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
   if (!again) PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
+  if (Adhesion *adhesion = solver_->part<Adhesion>(); adhesion && !again) {
+    PetscCall(adhesion->measure(&m.bonds));
+    if (solver_->bodies().bodies() > 0) PetscCall(adhesion->measure(solver_->bodies().bodies(), &m.body_bonds));
+  }
   // beta follows from div v; where that is noise (a wave's passes through 0 twice a period), so is beta.
   constexpr double noise = 1e-5;  // of U/h
   const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
@@ -242,6 +247,10 @@ PetscErrorCode Outputs::write_row() {
   for (const SideFlow &side : row_.sides) row.insert(row.end(), {side.flow_rate, side.pressure});
   for (const VesselFlow &vessel : vessel_flows(config_, measured.time, flow.bulk_velocity, row_.sides))
     row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
+  if (solver_->part<Adhesion>()) {
+    const BondTotals &bonds = measured.bonds;
+    row.insert(row.end(), {bonds.bonds, bonds.formed, bonds.broken, bonds.force[0], bonds.force[1], bonds.force[2]});
+  }
   PetscCall(series_.write(row));
   if (bodies_file_) {
     const auto name = [this](int label) -> const std::string & {

@@ -21,17 +21,22 @@ namespace {
 std::uint64_t hash_name(const std::string &name) { return mix_bits(checksum(name.data(), name.size(), 0)); }
 
 // Bodies in boxes of their own: their heads (FreeBodies::packed), and what follows them, one body after the other.
-constexpr const char *heads_name = "bodies_in_boxes", *values_name = "values_in_boxes";
+// With adhesion how many receptors each has.
+constexpr const char *heads_name = "bodies_in_boxes", *values_name = "values_in_boxes",
+                     *receptors_name = "receptors_in_boxes";
 
 std::vector<CheckpointRecords> boxes_of(const Solver &solver) {
-  CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}};
+  CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}},
+      receptors{receptors_name, 1, {}};
   const FreeBodies &boxed = solver.boxed().bodies();
   for (std::size_t b = 0; b < boxed.bodies().size(); ++b) {
     const std::vector<double> packed = boxed.packed(b);
     heads.values.insert(heads.values.end(), packed.begin(), packed.begin() + FreeBodies::head);
     values.values.insert(values.values.end(), packed.begin() + FreeBodies::head, packed.end());
+    receptors.values.push_back(double(boxed.bodies()[b].receptors.size()));
   }
-  return {heads, values};
+  if (!solver.part<Adhesion>()) return {heads, values};
+  return {heads, values, receptors};
 }
 
 // The values of what is carried.
@@ -59,7 +64,7 @@ void add_position(bool has_bonds, RunPosition *position, CarriedState *state) {
   state->reals["output_times"] = {&o.series_time, &o.snapshot_time, &o.profile_time};
   state->reals["mach_max"] = {&o.mach_max};
   state->integers["output_rows"] = {&o.series_rows, &o.bodies_rows, &o.snapshots};
-  if (has_bonds) state->integers["bond_rows"] = {&o.bonds.bodies, &o.bonds.bonds, &o.bonds.events};
+  if (has_bonds) state->integers["bond_rows"] = {&o.bonds.bonds, &o.bonds.events};
 }
 
 // All numbers of a checkpoint but those of single bodies.
@@ -159,6 +164,11 @@ PetscErrorCode require_different(const Domain &domain, const std::string &path, 
   PetscFunctionReturn(0);
 }
 
+int pairs_of(const Solver &solver) {
+  const auto *adhesion = solver.part<Adhesion>();
+  return adhesion ? static_cast<int>(adhesion->pairs().size()) : 0;
+}
+
 // Some bodies in boxes for each rank, the same values whoever gets them.
 PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver *solver) {
   const Domain &domain = solver->domain();
@@ -169,10 +179,17 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   const std::vector<Phase> &phases = solver->state().phases;
   PetscCall(require_range(domain, path, find_invalid_box(heads.values, domain, solver->bodies(), phases)));
   PetscCall(require_different(domain, path, solver->bodies().bodies(), heads.values));
+  CheckpointRecords receptors{receptors_name, 1, {}};
+  if (file->has(receptors_name)) PetscCall(file->read_records(&receptors));
+  receptors.values.resize(heads.values.size() / FreeBodies::head);
+  PetscCall(require_range(domain, path, find_invalid_count(receptors_name, receptors.values)));
   std::vector<std::size_t> sizes;
-  for (std::size_t n = 0; n < heads.values.size(); n += FreeBodies::head)
-    sizes.push_back(FreeBodies::packed_values(
-        domain.domain_shape(), phases[static_cast<int>(heads.values[n + 1])].tensor.centred, &heads.values[n]));
+  for (std::size_t b = 0; b < receptors.values.size(); ++b) {
+    const double *head = &heads.values[b * FreeBodies::head];
+    sizes.push_back(
+        FreeBodies::packed_values(domain.domain_shape(), phases[static_cast<int>(head[1])].tensor.centred, head) +
+        static_cast<std::size_t>(receptors.values[b]) * Receptor::numbers);
+  }
   values.values.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
   PetscCall(file->read_own_records(&values));
   solver->boxed().clear();
@@ -189,9 +206,12 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
       block.begin[d] = static_cast<int>(head[2 + d]) - SurfaceCells::layers;
       block.end[d] = static_cast<int>(head[2 + d] + head[5 + d]) + SurfaceCells::layers;
     }
-    const std::vector<double> markers(next - static_cast<int>(head[8]) * SurfaceMarker::numbers, next);
+    const double *first = next - static_cast<int>(receptors.values[b]) * Receptor::numbers;
+    const std::vector<double> markers(first - static_cast<int>(head[8]) * SurfaceMarker::numbers, first);
     if (wrong.empty())
       wrong = find_invalid_marker(markers, block, solver->bodies().bodies(), static_cast<int>(phases.size()));
+    if (wrong.empty()) wrong = find_invalid_receptor({first, next}, solver->bodies().bodies(), pairs_of(*solver));
+    if (!solver->part<Adhesion>()) packed.resize(packed.size() - (next - first));
   }
   PetscCall(require_range(domain, path, wrong));
   for (const std::vector<double> &packed : all) PetscCall(solver->boxed().add_packed(packed));
@@ -252,6 +272,11 @@ PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
     sum += hash_values(values.data(), values.size());
   }
   for (const BodyInBox &body : solver->boxed().list()) sum += hash_body(body);
+  for (const FreeBodies::Body &body : solver->boxed().bodies().bodies())
+    for (const Receptor &receptor : body.receptors) {
+      const auto values = receptor.packed();
+      sum += mix_bits(hash_values(values.data(), values.size()) ^ static_cast<std::uint64_t>(body.number));
+    }
   PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }
@@ -308,6 +333,8 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(load_markers(file, path, solver));
   PetscCall(solver->resume(numbers.integers["stages_and_sweeps"][0], numbers.integers["stages_and_sweeps"][1]));
   PetscCall(place_markers(*file, solver));
+  if (auto *adhesion = solver->part<Adhesion>(); adhesion && !file->has(receptors_name))
+    PetscCall(adhesion->place_on_bodies());
   PetscFunctionReturn(0);
 }
 

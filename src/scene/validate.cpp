@@ -342,7 +342,7 @@ std::string validate(Config *whole) {
     return wrong;
   if (const std::string wrong = place_all(solids, whole); !wrong.empty()) return wrong;
   if (const std::string wrong = measure_open_parts(whole); !wrong.empty()) return wrong;
-  if (const std::string wrong = check_adhesion(config); !wrong.empty()) return wrong;
+  if (const std::string wrong = check_adhesion(whole); !wrong.empty()) return wrong;
   return check_paths(config);
 }
 

@@ -4,7 +4,6 @@
 // neighbour in layer L - 1, and takes the mean of its neighbours in lower layers. Only lower layers are read, so the
 // order of points does not matter. Ghosts are extended together with owned points: B needs four valid ghost layers
 // where it evolves; afterwards three must be exchanged.
-// evolves, and afterwards an exchange of three.
 #pragma once
 
 #include "base/petsc.hpp"

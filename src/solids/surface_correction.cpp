@@ -288,12 +288,12 @@ void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const P
         evolving |= std::uint64_t(locations_[l].kind[p + around[l][m]] != outside) << (4 * l + m);
     chunk.at[chunk.count] = p;
     chunk.evolving[chunk.count] = evolving;
-    const auto find_mean = [&](auto &inside) {
+    const auto compute_mean = [&](auto &inside) {
       inside.kind = location->kind.data() + p;
       for (int f = 0; f < components; ++f) inside.field[f] = terms.B[first + f] + p;
       return inside.template mean<Dim>(chunk.mean, chunk.count);
     };
-    chunk.has_mean[chunk.count] = terms.relaxation > 0 && (centre ? find_mean(centres) : find_mean(edges));
+    chunk.has_mean[chunk.count] = terms.relaxation > 0 && (centre ? compute_mean(centres) : compute_mean(edges));
     if (++chunk.count == Chunk::most) work();
   }
   work();

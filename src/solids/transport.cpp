@@ -259,7 +259,7 @@ PetscErrorCode reset_exterior(const Box &box, const OccupiedRows &before, Phase 
         if (before.idle(j, k) && phase.rows.idle(j, k)) continue;
         for (int i = 0; i < box.points_end(0, at[0]); ++i)
           if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < (a == b ? rule.centre : rule.edge))
-            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // Field::at_rest
+            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // do not touch unused memory (Field::at_rest)
       }
   }
   PetscFunctionReturn(0);

@@ -1,4 +1,4 @@
-"""What scripts/studies/stability/stability_map asks of a finished run."""
+"""The criteria by which scripts/studies/stability/stability_map judges a finished run."""
 import math
 
 import numpy
