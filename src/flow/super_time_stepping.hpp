@@ -18,6 +18,9 @@ struct RigidMeans;
 /// dt <= dt_explicit (s^2 + s - 2)/4. (An even s leaves the stiffest mode undamped.)
 int rkl_stages(double dt, double dt_explicit);
 
+/// Boundaries of an increment of the velocity: walls move, and the inflow is, by how much it differs between two times.
+BoxSides sides_of_increment(const BoxSides &sides, double from, double to);
+
 /// Whether any phase stresses a row of cells, for all of them.
 std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases);
 

@@ -10,15 +10,15 @@
 namespace eulastic::kernels {
 
 /// Couplings of the cells of one row to their neighbours, 1/(width x distance of centres); 0 at a wall, where
-/// therefore no ghost is needed. Along x one number per cell.
+/// therefore no ghost is needed. Along x one number per cell. The operator is lap - shift.
 struct LineCoefficients {
   const double *x_low, *x_high;
-  double y_low, y_high, z_low, z_high;
+  double y_low, y_high, z_low, z_high, shift;
 };
 
 inline constexpr double line_laplacian_flops_per_direction = 6;
 
-/// Sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]) at cell i of the row q.
+/// Sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]), less shift q[0], at cell i of the row q.
 template <int Dim>
 EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy, std::ptrdiff_t sz,
                                       const LineCoefficients &c) noexcept {
@@ -31,7 +31,7 @@ EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy,
     sum = fma(c.z_low, q[i - sz] - centre, sum);
     sum = fma(c.z_high, q[i + sz] - centre, sum);
   }
-  return sum;
+  return fma(-c.shift, centre, sum);
 }
 
 /// sum += weight (r - factor lap r), of so many rows from s on: what one relaxation from zero leaves of the right-hand

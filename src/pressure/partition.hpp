@@ -6,10 +6,15 @@
 
 namespace eulastic {
 
+/// Boundaries of the domain, [direction][low, high], where the solution is 0; on the others its normal derivative is.
+using ZeroSides = std::array<std::array<bool, 2>, 3>;
+
 class Partition {
 public:
   /// That of the domain's DMDA.
-  explicit Partition(const Domain &domain);
+  explicit Partition(const Domain &domain) : Partition(domain, domain.domain_shape().open) {}
+  /// The same, with open boundaries where the solution is 0.
+  Partition(const Domain &domain, const ZeroSides &zero);
   /// The domain in fewer cells. In a direction with fewer cells each rank begins at half of its first cell, rounded up.
   Partition coarse(const Int3 &cells) const;
   /// The same cells on fewer ranks: in each named direction every second rank that has cells takes those of the next
@@ -28,8 +33,8 @@ public:
   std::vector<Ghost> ghosts() const;
 
 private:
-  /// `cells` of the domain, divided by split_.
-  void set_box(const Int3 &cells);
+  /// `cells` of a domain, divided by split_.
+  void set_box(DomainShape shape, const Int3 &cells);
 
   MPI_Comm comm_;
   int rank_, ranks_;

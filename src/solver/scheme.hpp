@@ -27,7 +27,7 @@ public:
   /// come there; `with_pressure` with the velocity of the start, in Flow::velocity_star, and the pressure of the end of
   /// the projection.
   virtual PetscErrorCode step(double dt, const Look &in_middle, const Look &with_pressure) = 0;
-  std::size_t bytes() const;
+  virtual std::size_t bytes() const;
 
   TimeStepLimits limits(const FlowExtremes &extremes) const;
   /// Kinematic viscosities (flow/local_viscosity.hpp) of phases; null where all are the fluid's.
