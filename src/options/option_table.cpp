@@ -127,6 +127,8 @@ void add_method(Rows &rows, Config &config) {
   rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"},
               "super time stepping RKL2 (where viscosities differ an implicit step, docs/method.md, section 16), or "
               "one explicit stage");
+  rows.real("viscous_tolerance", method.viscous_tolerance, positive, "",
+            "iterate the implicit viscous step until its residual is below this share of the right-hand side");
   rows.choice("interface_scheme", method.interface, {"plic", "weno5"},
               "transport of the solid fraction: plic is sharp and conservative; or WENO5");
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},

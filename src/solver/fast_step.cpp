@@ -18,8 +18,9 @@ PetscErrorCode FastStep::start() {
   PetscCall(Scheme::start());
   if (viscosity_ && !flow_.rigid && flow_.spec.viscous == ViscousScheme::rkl) {
     const ViscosityContrast range = contrast({});
-    PetscCall(
-        implicit_.create(flow_.domain, flow_.spec.sides, std::sqrt(range.least * range.most) / flow_.fluid.density));
+    PetscCall(implicit_.create(flow_.domain, flow_.spec.sides,
+                               std::sqrt(range.least * range.most) / flow_.fluid.density,
+                               flow_.spec.viscous_tolerance));
   }
   if (now.phases.empty() || !flow_.spec.linear_force()) PetscFunctionReturn(0);
   flow_.velocity_star = {};

@@ -3,6 +3,7 @@
 #include "flow/implicit_viscosity.hpp"
 #include "base/rank_zero.hpp"
 #include "flow/viscous_stress.hpp"
+#include "parts/method.hpp"
 #include "support/cell_block.hpp"
 
 #include <gtest/gtest.h>
@@ -153,7 +154,7 @@ TEST(ImplicitViscosity, EnergyDecreasesInStepsOfAnyLength) {
         Flow flow(flat, {false, true, true}, contrast);
         flow.stop_walls();
         ImplicitViscosity implicit;
-        ASSERT_EQ(implicit.create(flow.domain, flow.sides, flow.cycle_viscosity()), 0);
+        ASSERT_EQ(implicit.create(flow.domain, flow.sides, flow.cycle_viscosity(), Method().viscous_tolerance), 0);
         Field v = flow.field();
         for_inner_faces(flow.domain, [&](int c, int i, int j, int k) { v[c](i, j, k) = flow.velocity[c](i, j, k); });
         for (int n = 0; n < 4; ++n) {
