@@ -1,11 +1,11 @@
-// MPI datatypes that free themselves.
+// An MPI datatype that is freed by its destructor.
 #pragma once
 
 #include "base/petsc.hpp"
 
 namespace eulastic {
 
-/// `count` values of a datatype, one after the other.
+/// The datatype of `count` contiguous values of another datatype.
 class MpiType {
 public:
   MpiType() = default;
@@ -14,7 +14,7 @@ public:
   ~MpiType() {
     if (type_ != MPI_DATATYPE_NULL) (void)MPI_Type_free(&type_);
   }
-  /// Once.
+  /// May be called once.
   PetscErrorCode create(std::size_t count, MPI_Datatype of) {
     PetscFunctionBeginUser;
     PetscCallMPI(MPI_Type_contiguous(static_cast<int>(count), of, &type_));

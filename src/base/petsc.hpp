@@ -1,4 +1,4 @@
-// PETSc handles that release themselves, and the PETSc headers everybody needs.
+// RAII handles of PETSc objects, and the PETSc headers that all files need.
 #pragma once
 
 #include <petscdmda.h>
@@ -10,7 +10,7 @@
 
 namespace eulastic {
 
-/// Owns one PETSc object; movable, not copyable. `put()` hands the address to a Create function.
+/// Owns one PETSc object; movable, not copyable. Pass put() to a Create function.
 template <class T, PetscErrorCode (*Destroy)(T *)>
 class Handle {
 public:

@@ -1,6 +1,7 @@
 #include "bodies/near_places.hpp"
 
 #include "base/deliver.hpp"
+#include "grid/cell_ranks.hpp"
 #include "grid/domain.hpp"
 
 #include <algorithm>
@@ -9,29 +10,20 @@
 namespace eulastic {
 namespace {
 
-// How far a body reaches along d.
+// Returns the half-width of a body along d, or its bounding radius.
 double reach(const Surface &surface, const BodyPlace &place, int d) {
   const double radius = surface.bounding_radius();
   return std::isfinite(radius) ? radius : surface.support(rotation(place.orientation)[d]);
 }
 
-// The positions along d of ranks that a body comes near.
+// Returns the positions along d, in the grid of ranks, of those that a body is near.
 std::vector<int> positions_near(const Domain &domain, int d, const Surface &surface, const BodyPlace &place) {
   const int cells = domain.domain_cells()[d];
   const double h = domain.spacing()[d], centre = place.centre[d], far = reach(surface, place, d) + h;
-  int first = 0, last = cells - 1;
-  if (d < domain.dimension() && 2 * far + h < domain.domain_shape().length[d]) {
-    first = static_cast<int>(std::floor((centre - far) / h));
-    last = static_cast<int>(std::floor((centre + far) / h));
-    if (domain.is_wall(d)) first = std::max(first, 0), last = std::min(last, cells - 1);
-  }
-  std::vector<int> positions;
-  for (int i = first; i <= last;) {
-    const int cell = (i + cells) % cells, position = domain.split().position_along(d, cell);
-    if (positions.empty() || position != positions.front()) positions.push_back(position);
-    i += domain.split().starts[d][position + 1] - cell;
-  }
-  return positions;
+  if (d >= domain.dimension() || 2 * far + h >= domain.domain_shape().length[d])
+    return positions_over(domain, d, 0, cells);
+  int first = static_cast<int>(std::floor((centre - far) / h)), last = static_cast<int>(std::floor((centre + far) / h));
+  return positions_over(domain, d, first, last + 1);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ enum Maximum { max_x, max_y, max_z, max_speed_squared, max_divergence, maxima };
 
 double square(double x) { return x * x; }
 
-// One row at a time: each measure of its cells, ready to be added up.
+// Computes each measure for the cells of one row at a time.
 class RowMeasures {
 public:
   RowMeasures(const Box &box, const Field &velocity)
@@ -53,7 +53,7 @@ public:
     return values_.data();
   }
 
-  /// Sum of (dv_a/dx_b)^2, each where it is compact: dv_a/dx_a at the centre, the others on the cell's low edges.
+  /// Sum of (dv_a/dx_b)^2 in compact differences: dv_a/dx_a at the centre, the others on the cell's low edges.
   const double *squared_gradient(const Segment &row) {
     start();
     for (int a = 0; a < dimension_; ++a)
@@ -79,8 +79,8 @@ private:
     for (int i = begin; i < end; ++i) values_[i] += weight * square((other[i] - q[i]) * inverse_h);
   }
 
-  // The edges on a wall normal to b own half a cell; those on the high wall count with the last cell.
-  // A face that lies on a wall does not move: where that wall meets a moving one there is no shear.
+  // Edges on a wall normal to b have half a control volume; those on the high wall belong to the last cell. A face on a
+  // wall does not move, so that there is no shear where this wall meets a moving one.
   void add_cross_differences(const Segment &row, int a, int b) {
     const int last = box_.cells()[b] - 1, index = b == 1 ? row.j : row.k;
     if (a != 0 && box_.touches_low(a) && (a == 1 ? row.j : row.k) == 0) return;
@@ -102,11 +102,11 @@ private:
   std::vector<double> values_;
 };
 
-// The faces on sides that volume crosses: half a control volume each, where rows have counted a whole one on low sides
-// and none on high ones, and no shear along them.
+// Corrections on boundaries that volume crosses: each face has half a control volume, where the rows have counted a
+// whole one on low boundaries and none on high ones, and there is no shear along these boundaries.
 class SideFaces {
 public:
-  /// `viscosity`: that the squares of gradients are weighted with.
+  /// `viscosity`: weight of the squared gradients.
   SideFaces(const Box &box, const Field &velocity, double viscosity, ExactSums *sums)
       : box_(box), velocity_(velocity), viscosity_(viscosity), sums_(sums) {}
 
@@ -141,14 +141,14 @@ double largest(const double *values, int n, double so_far) {
   return so_far;
 }
 
-// `sum`, `maximum`: of all ranks, as the enumerations above number them.
+// Computes the measures from sums and maxima over all ranks, in the order of the enumerations above.
 FlowMeasures evaluate(const Box &box, const FlowNumbers &numbers, const double *sum,
                       const std::vector<double> &maximum) {
   FlowMeasures m;
   const double volume = box.cell_volume(), cells = box.domain_cell_count();
   m.kinetic_energy = 0.5 * numbers.density * sum[speed_squared] * volume;
   for (int c = 0; c < 3; ++c) m.bulk_velocity[c] = sum[momentum_x + c] / cells;
-  // Maxima drop NaN; 0 * sum brings it back.
+  // Maxima ignore NaN; adding 0 * sum restores it.
   for (int c = 0; c < 3; ++c) m.velocity_max[c] = maximum[c] + 0 * sum[momentum_x + c];
   m.speed_max = std::sqrt(maximum[max_speed_squared]) + 0 * sum[speed_squared];
   const Real3 &h = box.spacing();
@@ -217,11 +217,11 @@ PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &ph
   const auto add_row = [](const Box &box, const Phase &phase, int p, const Segment &row, std::vector<double> &density,
                           ExactSums &sums) {
     const ConstView phi = phase.fraction[0];
-    const Segment held = phase.rows.within(row, phi);
-    const int sum_of_phase = sums_of_phase * p, i = held.i_begin, first = box.layout().begin[0] + i;
-    strain_energy(box, phase, held, density.data());
-    sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, held.size(), first);
-    sums.add_row(sum_of_phase + energy, density.data() + i, held.size(), first);
+    const Segment occupied = phase.rows.within(row, phi);
+    const int sum_of_phase = sums_of_phase * p, i = occupied.i_begin, first = box.layout().begin[0] + i;
+    strain_energy(box, phase, occupied, density.data());
+    sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, occupied.size(), first);
+    sums.add_row(sum_of_phase + energy, density.data() + i, occupied.size(), first);
   };
   const auto add = [&](const RowPart &part, ExactSums &sums) {
     std::vector<double> density(domain.cells()[0]);

@@ -7,20 +7,20 @@
 namespace eulastic {
 namespace {
 
-// value(i, j, k): of a cell, not negative.
+// Centre of the cell with the largest value(i, j, k) >= 0; the first one in the order of indices if there are several.
 template <class Value>
 PetscErrorCode largest(const Domain &domain, Value value, Real3 *place) {
   PetscFunctionBeginUser;
   const Int3 &begin = domain.layout().begin, &N = domain.domain_cells();
-  double most = -1, here = -1, first = std::numeric_limits<double>::infinity();
+  double most = -1, own = -1, first = std::numeric_limits<double>::infinity();
   for_points(domain.rows(), [&](int i, int j, int k) {
     const double q = value(i, j, k);
-    if (!(q > here)) return;
-    here = q;
+    if (!(q > own)) return;
+    own = q;
     first = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
   });
-  PetscCallMPI(MPI_Allreduce(&here, &most, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
-  if (here < most) first = std::numeric_limits<double>::infinity();
+  PetscCallMPI(MPI_Allreduce(&own, &most, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
+  if (own < most) first = std::numeric_limits<double>::infinity();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, domain.comm()));
   *place = std::isfinite(first) ? place_of_cell(domain, first) : Real3{};
   PetscFunctionReturn(0);

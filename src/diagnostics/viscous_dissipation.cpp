@@ -7,7 +7,7 @@ namespace {
 
 double square(double x) { return x * x; }
 
-// nu (d_b v_a + d_a v_b)^2 on the low edge normal to a and b of the cell that everything points to.
+// nu (d_b v_a + d_a v_b)^2 on the low edge, normal to a and b, of the cell `edge`.
 double on_edge(const Field &viscosity, const Field &velocity, const Real3 &h, int slot, int a, int b,
                const Int3 &edge) {
   const ConstView u = velocity[a], v = velocity[b];
@@ -16,7 +16,7 @@ double on_edge(const Field &viscosity, const Field &velocity, const Real3 &h, in
   return viscosity[slot](edge[0], edge[1], edge[2]) * square(rate);
 }
 
-// Of the deviator times twice D.
+// Dissipation by the deviator of 2 D at a centre.
 double at_centre_of(const ConstView &viscosity, const Field &velocity, const Real3 &h, int dimension,
                     const Int3 &cell) {
   double rate[3] = {}, sum = 0;
@@ -30,7 +30,8 @@ double at_centre_of(const ConstView &viscosity, const Field &velocity, const Rea
   return (dimension == 2 ? 1 : 2. / 3) * viscosity(cell[0], cell[1], cell[2]) * sum;
 }
 
-// That of the stress along surfaces: it and the rate of strain have no shear across them in common.
+// Dissipation by the stress along surfaces, (29a). It equals stress times its own rate of strain, as neither has shear
+// across the surface.
 template <int Dim>
 double along_surface(const Box &box, const Field &viscosity, const Field &velocity, const Int3 &cell) {
   const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(box, viscosity, velocity, cell[1], cell[2]);
@@ -47,7 +48,8 @@ void viscous_dissipation(const Box &box, const Field &viscosity, const Field &ve
                          double *out) {
   const int dim = box.dimension();
   const Real3 &h = box.spacing();
-  // Share of the edges with that index along d: on a side half, beyond the owned cells none but there.
+  // Share of the control volume of edges with this index along d: half on a boundary; behind the last cell only edges
+  // on a boundary count.
   const auto share = [&](int d, int index) {
     if (index == 0) return box.touches_low(d) ? 0.5 : 1.0;
     if (index == box.cells()[d]) return box.touches_high(d) ? 0.5 : 0.0;

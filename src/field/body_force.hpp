@@ -1,4 +1,4 @@
-// A force per mass that may swing in time.
+// A force per mass, constant or oscillating.
 #pragma once
 
 #include "grid/box.hpp"
@@ -7,10 +7,10 @@
 
 namespace eulastic {
 
-/// f cos(frequency t + phase).
+/// The force per mass f cos(frequency t + phase).
 struct BodyForce {
   Real3 force{};         ///< length / time^2
-  double frequency = 0;  ///< angular
+  double frequency = 0;  ///< angular, 1 / time
   double phase = 0;      ///< rad
   bool acts() const { return force != Real3{}; }
   Real3 at(double time) const {

@@ -1,4 +1,4 @@
-// The fluid and what drives it.
+// The fluid and its body force.
 #pragma once
 
 #include "field/body_force.hpp"
@@ -6,15 +6,16 @@
 
 namespace eulastic {
 
+/// Parameters of the fluid.
 struct Fluid {
   double density = 1;    ///< rho
-  double viscosity = 1;  ///< mu, dynamic; of bodies too, unless they have their own
-  bool inertia = true;   ///< false drops v.grad v
+  double viscosity = 1;  ///< mu, dynamic; also of bodies without a viscosity of their own
+  bool inertia = true;   ///< false omits v.grad v
   BodyForce body_force;
   double kinematic_viscosity() const { return viscosity / density; }
 };
 
-/// Dynamic viscosity of a body.
+/// Returns the dynamic viscosity of a body.
 inline double viscosity_of(const Material &material, const Fluid &fluid) {
   return material.viscosity > 0 ? material.viscosity : fluid.viscosity;
 }

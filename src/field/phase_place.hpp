@@ -1,4 +1,4 @@
-// Where a phase lies: on a rank's part of the grid, or in a box of its own that is whole on this rank.
+// The domain of a phase: this rank's part of the grid, or a box of its own that is complete on this rank.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -9,16 +9,16 @@
 
 namespace eulastic {
 
+/// Box, boundaries and ghost exchange of a phase.
 struct PhasePlace {
   const Box *box;
   const BoxSides *sides;
-  /// Null where the box is whole on this rank: its ghosts are behind sides of the domain, or hold what is far from
-  /// bodies.
+  /// Null if the box is complete on this rank: its ghosts are behind boundaries of the domain, or far from bodies.
   GhostExchange *exchange;
 
-  /// Ghosts that other ranks own; `rows` as in WantedGhosts.
+  /// Updates ghosts that other ranks own; `rows` as in WantedGhosts.
   PetscErrorCode exchange_ghosts(Field &field, int width, const OccupiedRows *rows) const;
-  /// Ghosts of B from other ranks and behind sides.
+  /// Updates ghosts of B, from other ranks and behind boundaries.
   PetscErrorCode update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const;
 };
 

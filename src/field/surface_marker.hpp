@@ -1,4 +1,4 @@
-// A material point of a membrane, by which its surface knows its shape at rest.
+// A material point on the surface of a membrane, which stores its undeformed position.
 #pragma once
 
 #include "grid/box.hpp"
@@ -8,17 +8,18 @@
 namespace eulastic {
 
 struct SurfaceMarker {
-  std::int64_t number = 0;         ///< of the body's markers
-  int label = 0;                   ///< of the body, 0 where there are none
-  int phase = 0;                   ///< position in the vector of phases
-  Int3 cell{};                     ///< global
-  Real3 offset{};                  ///< from the cell's centre, in cells
-  Real3 rest{};                    ///< where it was when it was placed, in the box
-  Real3 normal{};                  ///< of the surface there, when it was placed
-  std::array<double, 6> metric{};  ///< of the membrane's rest there: xx, yy, zz, yz, xz, xy; 1 of one that was at rest
+  std::int64_t number = 0;  ///< number of the marker on its body
+  int label = 0;            ///< label of the body, 0 if there are no labels
+  int phase = 0;            ///< index in the vector of phases
+  Int3 cell{};              ///< global index of its cell
+  Real3 offset{};           ///< from the centre of the cell, in cells
+  Real3 rest{};             ///< undeformed position in the box
+  Real3 normal{};           ///< normal of the surface when the marker was placed
+  /// M of (25a) when it was placed: xx, yy, zz, yz, xz, xy; the identity for an undeformed membrane
+  std::array<double, 6> metric{};
 
   static constexpr int numbers = 21;
-  /// All of it, exactly.
+  /// Returns all members as doubles, exactly.
   std::array<double, numbers> packed() const;
   static SurfaceMarker unpacked(const double *values);
 };

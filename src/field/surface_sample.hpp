@@ -1,24 +1,24 @@
-// What is known of surfaces: of all of them, and of a cell near a membrane.
+// Measures of surfaces: sums over all of them, and values in a cell near a membrane.
 #pragma once
 
 #include "grid/box.hpp"
 
 namespace eulastic {
 
-/// Of all phases together; 2-D: per unit depth.
+/// Sums over all phases; in 2-D per unit depth.
 struct SurfaceEnergy {
-  double energy = 0;  ///< sum of sigma times the area of the planes that transport cuts cells with, and of membranes
-  double power = 0;   ///< minus that of the forces: flow to surfaces
+  double energy = 0;  ///< surface tension times area, energy of membranes, and E_w of (27b)
+  double power = 0;   ///< minus the power of the surface forces: from the flow to the surfaces
 };
 
-/// A cell at a surface.
+/// Values in a cell at the surface of a membrane.
 struct SurfaceSample {
   int label;
-  Int3 place;      ///< local
-  double delta;    ///< of the surface, 1/length
-  double rest;     ///< the same of what the surface was at rest
+  Int3 place;      ///< local index of the cell
+  double delta;    ///< delta function of the surface, 1/length
+  double rest;     ///< the same for the undeformed surface
   double stretch;  ///< larger principal stretch along the surface
-  Real3 velocity;  ///< at its centre
+  Real3 velocity;  ///< at the centre of the cell
   double shear_energy, area_energy, bending_energy;
 };
 

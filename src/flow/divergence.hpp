@@ -1,4 +1,4 @@
-// The divergence that the projection removes.
+// The divergence of the predicted velocity, which the projection removes.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -6,7 +6,7 @@
 
 namespace eulastic {
 
-/// D* = rho div v* at centres. Needs one ghost of v*. Rows are wrapped by one around a periodic x.
+/// Computes D* = rho div v* at the owned centres. v* needs one ghost.
 PetscErrorCode compute_divergence(const Box &box, double density, const Field &velocity_star, Field &divergence);
 
 }  // namespace eulastic

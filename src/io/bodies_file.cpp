@@ -53,7 +53,7 @@ bool write_bodies(hid_t file, const BodySpecies &bodies) {
          write_text_attribute(id.get(), "checksum", checksum_text(checksum(ids.data(), ids.size(), 0)));
 }
 
-// Empty, or what was wrong: then nothing is left of the copy.
+// Returns an error text, or nothing; after an error the copy is removed.
 std::string copy_file(const std::string &path, const std::string &target) {
   std::error_code error, ignored;
   std::filesystem::copy_file(path, target, std::filesystem::copy_options::overwrite_existing, error);
@@ -64,16 +64,19 @@ std::string copy_file(const std::string &path, const std::string &target) {
 
 }  // namespace
 
-BodiesFile::BodiesFile(MPI_Comm comm, std::string path, bool membranes, bool loads)
-    : comm_(comm), path_(std::move(path)), membranes_(membranes), loads_(loads) {
+BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &columns)
+    : comm_(comm), path_(std::move(path)), has_(columns) {
   columns_ = {{"centroid", 3, 0}, {"velocity", 3, 0}};
   for (const char *name :
        {"volume", "taylor_deformation", "inclination", "elastic_energy", "largest_stretch", "rest_deformation"})
     columns_.push_back({name, 1, 0});
   for (const char *name : {"surface_area", "shear_energy", "area_energy", "bending_energy", "turning_rate"})
-    if (membranes) columns_.push_back({name, 1, 0});
+    if (has_.membranes) columns_.push_back({name, 1, 0});
   for (const char *name : {"force", "torque"})
-    if (loads) columns_.push_back({name, 3, 0});
+    if (has_.loads) columns_.push_back({name, 3, 0});
+  if (has_.bonds)
+    columns_.insert(columns_.end(),
+                    {{"bonds", 1, 0}, {"bond_force", 3, 0}, {"bond_tension", 1, 0}, {"bond_age", 1, 0}});
   for (const Column &column : columns_) width_ += column.width;
   (void)MPI_Comm_rank(comm, &rank_);
   (void)MPI_Comm_size(comm, &ranks_);
@@ -97,12 +100,17 @@ PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::v
     put(b.velocity);
     waiting_.insert(waiting_.end(), {b.volume, b.taylor_deformation, b.inclination, b.elastic_energy, b.largest_stretch,
                                      b.rest_deformation});
-    if (membranes_)
+    if (has_.membranes)
       waiting_.insert(waiting_.end(),
                       {b.surface_area, b.shear_energy, b.area_energy, b.bending_energy, b.turning_rate});
-    if (!loads_) continue;
-    put(b.force);
-    put(b.torque);
+    if (has_.loads) {
+      put(b.force);
+      put(b.torque);
+    }
+    if (!has_.bonds) continue;
+    waiting_.push_back(b.bonds);
+    put(b.bond_force);
+    waiting_.insert(waiting_.end(), {b.bond_tension, b.bond_age});
   }
   const std::size_t bytes = times_.size() * (1 + width_ * known_.bodies) * sizeof(double);
   if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(write_waiting());
@@ -149,7 +157,7 @@ PetscErrorCode BodiesFile::flush() {
   PetscFunctionReturn(0);
 }
 
-// What waits of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
+// Buffered rows of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
 PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *values) const {
   PetscFunctionBeginUser;
   const std::size_t rows = times_.size();

@@ -19,6 +19,8 @@ struct BodyRecord {
   double largest_stretch = 0;   ///< largest principal stretch anywhere in it, from tr B
   double rest_deformation = 0;  ///< taylor_deformation of what is left when the mean of B is undone
   Real3 force{}, torque{};      ///< of the fluid on a body that bears loads; 0 of others
+  double bonds = 0, bond_tension = 0, bond_age = 0;  ///< of adhesion: number, means
+  Real3 bond_force{};                                ///< of all of them, on the body
   /// Of membranes: area (2-D: length) of the surface, energies, angular velocity at which it goes round in the xy
   /// plane.
   double surface_area = 0, shear_energy = 0, area_energy = 0, bending_energy = 0, turning_rate = 0;

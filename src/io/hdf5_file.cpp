@@ -529,7 +529,8 @@ PetscErrorCode Hdf5File::read_own_records(const std::string &name, std::size_t n
   PetscCallMPI(MPI_Scan(&mine, &end, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
   PetscCallMPI(MPI_Allreduce(&mine, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
   PetscCall(open_dataset(name, &dataset));
-  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{all, 1, numbers}, name + " is of another scene"));
+  PetscCall(
+      check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{all, 1, numbers}, name + " belongs to another case"));
   PetscCall(read_values(name, dataset.get(), {3, {all, 1, numbers}, {end - mine, 0, 0}, {mine, 1, numbers}}, values));
   PetscFunctionReturn(0);
 }
@@ -539,7 +540,7 @@ PetscErrorCode Hdf5File::read_share(const std::string &name, hsize_t total, hsiz
   Hdf5Dataset dataset;
   PetscFunctionBeginUser;
   PetscCall(open_dataset(name, &dataset));
-  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{total}, name + " is of another scene"));
+  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{total}, name + " belongs to another case"));
   PetscCall(read_values(name, dataset.get(), {1, {total, 1, 1}, {begin, 0, 0}, {values->size(), 1, 1}}, values));
   PetscFunctionReturn(0);
 }

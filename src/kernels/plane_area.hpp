@@ -1,5 +1,5 @@
-// Area of the plane that a cell is cut with: seen along d, m_d V'(alpha) of the cell's face. docs/method.md,
-// section 17.
+// Area of the plane that cuts a cell: its projection along d is m_d V'(alpha) times the cell's face (docs/method.md,
+// section 17).
 #pragma once
 
 #include "kernels/interface_normal.hpp"
@@ -7,7 +7,7 @@
 
 namespace eulastic::kernels {
 
-/// Of a cell with 0 < phi < 1; `face`: areas of the cell's faces across every direction.
+/// Returns the area of the plane in a cell with 0 < phi < 1. `face`: areas of the cell's faces across every direction.
 template <int Dim>
 EULASTIC_INLINE double plane_area(const double *q, const std::ptrdiff_t *stride, const double *face) noexcept {
   const InterfaceNormal n = interface_normal<Dim>(q, stride[0], stride[1], stride[2]);

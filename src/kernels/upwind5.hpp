@@ -5,8 +5,8 @@
 
 namespace eulastic::kernels {
 
-/// h dq/dx at q[0], upwind for the sign of `velocity`, from six of seven points at `stride`. Upwind from the right is
-/// the mirror image.
+/// Returns h dq/dx at q[0], upwind for the sign of `velocity`, from six of seven points at `stride`. For a negative
+/// velocity it is the mirror image.
 EULASTIC_INLINE double upwind5_difference(const double *q, std::ptrdiff_t stride, double velocity) noexcept {
   const std::ptrdiff_t s = velocity > 0 ? stride : -stride;
   const double sign = velocity > 0 ? 1. / 60 : -1. / 60;

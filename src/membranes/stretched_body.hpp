@@ -1,5 +1,4 @@
-// -NAME_stretch_force of a body that is alone in its box; of the labelled bodies of a grid:
-// membranes/stretch_force.hpp.
+// -NAME_stretch_force for a body in a box of its own; membranes/stretch_force.hpp treats labelled bodies on the grid.
 #pragma once
 
 #include "base/exact_sum.hpp"
@@ -11,17 +10,17 @@ inline bool is_stretched(const Material &material) { return material.stretch_for
 
 class StretchedBody {
 public:
-  /// Finds the ends of the body. What is given must outlive this.
+  /// Finds the ends of the body. `box` and `phase` must outlive this.
   StretchedBody(const Box &box, const Phase &phase);
-  /// force += the force per volume along x on the faces of the box.
+  /// Adds the force per volume along x on the faces of the box.
   void add_force(View force) const;
-  /// Adds to sum `which` what it does on a flow with this velocity along x, over the volume of a cell.
+  /// Adds the power of the force on a flow with this velocity along x, divided by the cell volume, to sum `which`.
   void add_power(ConstView velocity, int which, ExactSums *sum) const;
 
 private:
   const Box *box_;
   const Phase *phase_;
-  std::vector<double> per_volume_;  ///< of the columns of the box
+  std::vector<double> per_volume_;  ///< force per volume, by column of the box
 };
 
 }  // namespace eulastic

@@ -49,12 +49,12 @@ const std::vector<std::pair<Words, std::string>> &missing() {
 // What there is under another name.
 const std::vector<std::pair<Words, std::string>> &called_otherwise() {
   static const std::vector<std::pair<Words, std::string>> table{
-      {{"inlet", "inlets"}, "is called inflow here: -boundary_xmin inflow with -inflow_xmin_velocity"},
+      {{"inlet", "inlets"}, "is called inflow here: -boundary_xmin inflow with -boundary_xmin_velocity"},
       {{"outlet", "outlets"},
        "is called outflow here, or pressure where the pressure is given: -boundary_xmax outflow, -boundary_xmax "
-       "pressure with -pressure_xmax_value"},
+       "pressure with -boundary_xmax_pressure"},
       {{"time_integrator"}, "is -method: fast is of second order in time, classic plain Euler"},
-      {{"skalak"}, "is a law of membranes: -NAME_law membrane with -NAME_membrane skalak"},
+      {{"skalak"}, "is a law of membranes: -NAME_law membrane with -NAME_membrane_law skalak"},
   };
   return table;
 }

@@ -3,6 +3,7 @@
 #include "io/option_values.hpp"
 #include "options/not_supported.hpp"
 #include "options/petsc_options.hpp"
+#include "options/renamed_options.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -62,6 +63,8 @@ std::string unknown_option(const std::string &name, const std::vector<Option> &t
   const std::string start = "unknown option -" + name, end = "; see -help";
   if (is_petsc_option("pressure_" + name)) return start + "; accepted with -pressure_solver ksp: -pressure_" + name;
   std::string plain = name.substr(0, name.find('=')).substr(name[0] == '-');
+  if (const std::string now = present_name(plain); !now.empty())
+    return start + ": it is now called -" + now + "; docs/options.md lists all former names";
   std::transform(plain.begin(), plain.end(), plain.begin(), [](unsigned char c) { return std::tolower(c); });
   const Option *nearest = nullptr;
   std::size_t least = plain.size() / 2 + 1;  // further away it is another word
@@ -70,7 +73,7 @@ std::string unknown_option(const std::string &name, const std::vector<Option> &t
   if (nearest && least <= 2) return start + "; nearest known: -" + nearest->name + " (" + nearest->accepted + ")" + end;
   if (const std::string why = not_supported(plain); !why.empty()) return start + ": " + why;
   if (const std::string species = missing_species(name); !species.empty())
-    return start + ": -species names no " + species + end;
+    return start + ": -species does not list " + species + end;
   for (const std::string &petsc : petsc_option_names())
     if (petsc.back() != '_' && edit_distance(plain, petsc) <= 2) return start + "; nearest known: -" + petsc + end;
   if (nearest) return start + "; nearest known: -" + nearest->name + " (" + nearest->accepted + ")" + end;

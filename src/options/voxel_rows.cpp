@@ -21,20 +21,20 @@ void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
   rows.boolean("voxels_invert", voxels.invert, "exchange solid and fluid of the file, for a mask of a lumen");
 }
 
-void add_attached_row(Rows &rows, SpeciesSpec &spec) {
+void add_anchored_row(Rows &rows, SpeciesSpec &spec) {
   bool unused = false;
   Option &row = rows.boolean(
-      "attached", unused,
+      "anchored", unused,
       "whether the body is anchored, a wall that hardly moves (slab, tube, vessel): B is extrapolated linearly, with "
       "second order at rest");
   row.default_note = "true for slab and tubes, else false";
   row.read = [&spec](const std::string &value) {
-    bool attached = false;
-    std::string wrong = read_boolean(value, &attached);
-    if (wrong.empty()) spec.attached = attached;
+    bool anchored = false;
+    std::string wrong = read_boolean(value, &anchored);
+    if (wrong.empty()) spec.anchored = anchored;
     return wrong;
   };
-  row.text = [&spec] { return spec.attached.value_or(is_attached(spec.shape)) ? "true" : "false"; };
+  row.text = [&spec] { return spec.anchored.value_or(is_anchored(spec.shape)) ? "true" : "false"; };
 }
 
 }  // namespace eulastic

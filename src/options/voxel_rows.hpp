@@ -1,4 +1,4 @@
-// Rows of the option table for bodies from files, and for what is attached.
+// Rows of the option table for bodies from files, and for -NAME_anchored.
 #pragma once
 
 #include "options/option_rows.hpp"
@@ -6,6 +6,6 @@
 namespace eulastic {
 
 void add_voxel_rows(Rows &rows, VoxelSpec &voxels);
-void add_attached_row(Rows &rows, SpeciesSpec &spec);
+void add_anchored_row(Rows &rows, SpeciesSpec &spec);
 
 }  // namespace eulastic

@@ -28,7 +28,8 @@ const std::vector<std::string> always{"time",
 
 }  // namespace
 
-std::vector<std::string> series_columns(const std::vector<SideFlow> &sides, const std::vector<VesselFlow> &vessels) {
+std::vector<std::string> series_columns(const std::vector<SideFlow> &sides, const std::vector<VesselFlow> &vessels,
+                                        bool adheres) {
   std::vector<std::string> columns = always;
   if (!sides.empty()) columns.emplace_back("side_power");
   for (const SideFlow &side : sides) {
@@ -39,6 +40,8 @@ std::vector<std::string> series_columns(const std::vector<SideFlow> &sides, cons
     columns.push_back(vessel.species + "_flow_rate");
     columns.push_back(vessel.species + "_apparent_viscosity");
   }
+  for (const char *name : {"bonds", "bonds_formed", "bonds_broken", "bond_force_x", "bond_force_y", "bond_force_z"})
+    if (adheres) columns.emplace_back(name);
   return columns;
 }
 

@@ -19,11 +19,11 @@ constexpr double many_steps = 1e9;
 
 // The numbers of such a body mean little.
 std::string unresolved(const State &state) {
-  char text[200];
+  char text[240];
   std::snprintf(
       text, sizeof text,
       "t = %.9g: the grid does not resolve the strain of a body (det B > %g, or half of a membrane's area gone), "
-      "part of which is lost there; more -grid_cells",
+      "part of which is lost there; use more -grid_cells",
       state.time, largest_determinant);
   return text;
 }
@@ -46,7 +46,7 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
       dt_ = time_.step;
       if (const char *limit = limits.broken(dt_); limit && !warned_) {
         char text[200];
-        std::snprintf(text, sizeof text, "-time_step %g is beyond the %s limit (automatic: %g)", dt_, limit,
+        std::snprintf(text, sizeof text, "-time_step %g exceeds the %s limit (automatic: %g)", dt_, limit,
                       limits.automatic());
         *warning = text;
       }
@@ -69,10 +69,10 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TimeStepControl::forget_unresolved(Solver *solver, std::string *warning) {
+PetscErrorCode TimeStepControl::reset_unresolved(Solver *solver, std::string *warning) {
   PetscFunctionBeginUser;
   if (!measured_) PetscFunctionReturn(0);
-  PetscCall(solver->forget_unresolved(extremes_));
+  PetscCall(solver->reset_unresolved(extremes_));
   if (solver->state().forgotten == 0 || unresolved_ || !warning->empty()) PetscFunctionReturn(0);
   *warning = unresolved(solver->state());
   unresolved_ = true;

@@ -160,7 +160,7 @@ PetscErrorCode balance_ranks(const Solver &solver, GridSpec *spec, std::string *
     std::snprintf(text, sizeof text, "balance: one rank has all cells");
   else if (spec->starts[0].empty())
     std::snprintf(text, sizeof text,
-                  "balance: the even split stays, heaviest rank %.3g of the mean, at best %.3g (estimate)", before,
+                  "balance: the even split is kept, heaviest rank %.3g of the mean, at best %.3g (estimate)", before,
                   after);
   else
     std::snprintf(text, sizeof text, "balance: heaviest rank %.3g -> %.3g of the mean (estimate)", before, after);

@@ -1,5 +1,5 @@
-// Cosines of different frequencies, and what is linear in pieces, are linearly independent on any piece: so the flow
-// rates cancel at every time if the cosines of each frequency do, and the tables at each of their rows.
+// Cosines of different frequencies and piecewise linear functions are linearly independent on any interval: the flow
+// rates cancel at every time if the cosines of each frequency cancel, and the tables cancel at each of their rows.
 #include "scene/inflow_balance.hpp"
 
 #include "io/option_values.hpp"
@@ -21,8 +21,8 @@ struct Inflow {
   bool oscillates() const { return course->table.empty() && course->frequency > 0; }
 };
 
-// Times of all rows, from the start to the last row of the tables that do not repeat and for the sum of the periods of
-// those that do: a sum of functions with these periods that is 0 for so long is 0 for ever.
+// Times of all rows, from the start to the last row of the tables that do not repeat, and for the sum of the periods of
+// those that do: a sum of functions with these periods that vanishes for so long vanishes always.
 std::vector<double> row_times(const std::vector<Inflow> &inflows, double end) {
   double last = 0, periods = 0;
   for (const auto &[course, area] : inflows) {
@@ -71,8 +71,8 @@ std::string check_inflow_balance(const Config &config) {
       names += (names.empty() ? "-boundary_" : ", -boundary_") + std::string{"xyz"[d]} + (high ? "max" : "min");
     }
   const std::string way_out =
-      " and has no way out; accepted: a pressure or outflow side, or inflow sides whose flow rates have the sum 0 at "
-      "every time";
+      " and cannot leave the box; accepted: a pressure or outflow boundary, or inflow boundaries whose flow rates have "
+      "the sum 0 at every time";
   double largest = 0, slope = 0;
   std::map<double, std::complex<double>> cosines;
   for (const Inflow &inflow : inflows) {
@@ -83,14 +83,14 @@ std::string check_inflow_balance(const Config &config) {
   }
   for (const auto &[frequency, sum] : cosines)
     if (std::abs(sum) > round_off * largest)
-      return names + ": up to " + to_text(std::abs(sum)) + " volume/time comes in at the angular frequency " +
+      return names + ": up to " + to_text(std::abs(sum)) + " volume/time enters at the angular frequency " +
              to_text(frequency) + way_out;
   for (const double time : row_times(inflows, config.time.end)) {
     double sum = 0;
     for (const Inflow &inflow : inflows)
       if (!inflow.oscillates()) sum += inflow.course->at(time) * inflow.area;
     if (std::fabs(sum) > round_off * (largest + slope * time))
-      return names + ": " + to_text(sum) + " volume/time comes in at time " + to_text(time) + way_out;
+      return names + ": " + to_text(sum) + " volume/time enters at time " + to_text(time) + way_out;
   }
   return {};
 }

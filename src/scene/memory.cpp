@@ -20,7 +20,7 @@ namespace {
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(dimension_of(config)).size()); }
 
-/// Doubles per cell of a phase: fraction, label and what it remembers; of the staggered method again at the time of
+/// Doubles per cell of a phase: fraction, label and deformation; with the staggered method a second copy at the time of
 /// the output.
 double phase_fields(const Config &config, bool carries_tensor) {
   return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
@@ -118,7 +118,7 @@ std::string too_little(int ranks, double needed, double limit, double share) {
   char text[320];
   std::snprintf(text, sizeof text,
                 "-grid_cells: the fields need about %.4g GB on a node (%d ranks), which has %.4g GB; accepted: fewer "
-                "cells, more nodes, or another -guard_memory (%g now, 0 = off)",
+                "cells, more nodes, or another -guard_memory (%g now; off disables the check)",
                 1e-9 * needed, ranks, 1e-9 * limit, share);
   return text;
 }

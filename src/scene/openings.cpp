@@ -28,7 +28,7 @@ std::size_t cells_of_side(const Config &config, int d) {
   return cells;
 }
 
-// Makes the mean 1; returns what it was.
+// Scales a profile to the mean 1; returns its former mean.
 double make_mean_one(SideProfile *profile) {
   double sum = 0;
   for (const double value : *profile) sum += value;
@@ -62,16 +62,26 @@ std::string read_profile(const Config &config, int d, int high, SideProfile *pro
   if (!wrong.empty()) return wrong;
   const std::size_t cells = cells_of_side(config, d);
   if (profile->size() != cells)
-    return spec.profile + " has " + std::to_string(profile->size()) + " numbers; accepted: one per cell of the side, " +
-           std::to_string(cells);
+    return spec.profile + " has " + std::to_string(profile->size()) +
+           " numbers; accepted: one per cell of the boundary, " + std::to_string(cells);
   *mean = make_mean_one(profile);
   if (!std::isfinite(1 / *mean)) return spec.profile + ": its mean is 0; accepted: a flow into the box";
   return {};
 }
 
+std::string resolve_wall(const Config &config, int d, int high, Side *side) {
+  const OpeningSpec &spec = config.openings[d][high];
+  side->motion = {{}, spec.frequency, spec.phase};
+  if (spec.velocity.empty()) return {};
+  const std::string wrong = read_reals(spec.velocity, any_number, side->motion.velocity.data(), 3);
+  if (wrong.empty()) return {};
+  return "-boundary_" + name_of(d, high) + "_velocity: " + wrong +
+         "; accepted: for a wall 3 numbers, separated by commas";
+}
+
 std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   const OpeningSpec &spec = config.openings[d][high];
-  const std::string name = "-inflow_" + name_of(d, high);
+  const std::string name = "-boundary_" + name_of(d, high);
   if (!spec.velocity.empty() && !spec.flow_rate.empty())
     return name + "_flow_rate: given beside " + name + "_velocity; accepted: one of them";
   SideProfile profile;
@@ -90,7 +100,7 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   if (!text.empty())
     if (std::string wrong = read_course(text, &course); !wrong.empty()) return option + ": " + wrong;
   if (!course.table.empty() && (spec.frequency != 0 || spec.phase != 0))
-    return name + "_frequency: has no meaning beside a table; accepted: 0, and phase 0";
+    return name + "_angular_frequency: does not apply to a table; accepted: 0, and phase 0";
   if (std::string wrong = extend_table(spec, name, option, text, config.time.end, &course); !wrong.empty())
     return wrong;
   if (flow) {
@@ -101,11 +111,11 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   return {};
 }
 
-std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
-  const double length = config.openings[d][high].feeder, h = config.grid.length[d] / config.grid.cells[d];
+std::string resolve_inlet_generator(const Config &config, int d, int high, Side *side) {
+  const double length = config.openings[d][high].generator_length, h = config.grid.length[d] / config.grid.cells[d];
   constexpr int least = 8, left = 8;  // cells
   if (length == 0) return {};
-  const std::string name = "-inflow_" + name_of(d, high) + "_feeder: ";
+  const std::string name = "-boundary_" + name_of(d, high) + "_generator_length: ";
   const double cells = std::round(length / h), most = config.grid.cells[d] - left;
   if (cells < least || cells > most)
     return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: from " + to_text(least) + " to " +
@@ -114,17 +124,20 @@ std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
     return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: a whole number, such as " +
            to_text(cells * h);
   if (!config.species.empty() && !config.body_series)
-    return name + "bodies that come in need names; accepted: -body_series true";
-  side->feeder = static_cast<int>(cells);
+    return name + "bodies that enter must be labelled; accepted: -body_series true";
+  side->generator_cells = static_cast<int>(cells);
   return {};
 }
 
-// A capacity that is 0, or drained by nothing, holds no pressure of its own: the limits of small ones.
+// Without a capacitance, or without a resistance in parallel to it, the Windkessel has no pressure of its own: the
+// limit of small values.
 std::string resolve_load(const OpeningSpec &spec, const std::string &name, OutletLoad *load) {
   const auto &[first, capacity, second] = spec.windkessel;
   const bool holds = capacity > 0 && second > 0;
   if (!holds && spec.windkessel_start != 0)
-    return name + "_windkessel_start: there is no capacity that a resistance drains; accepted: 0, or with both in " +
+    return name +
+           "_windkessel_initial_pressure: the Windkessel has no capacitance with a parallel resistance; accepted: 0, "
+           "or both in " +
            name + "_windkessel";
   if (spec.resistance > 0 && spec.windkessel != Real3{})
     return name + "_resistance: given beside " + name + "_windkessel; accepted: one of them";
@@ -144,24 +157,25 @@ std::string resolve_openings(Config *config) {
       side.kind = bounded ? config->boundary.kind(d, high) : SideKind::wall;
       config->grid.open[d][high] = bounded && is_open(side.kind);
       if (side.kind == SideKind::inflow)
-        for (const auto resolve : {resolve_inflow, resolve_feeder})
+        for (const auto resolve : {resolve_inflow, resolve_inlet_generator})
           if (std::string wrong = resolve(*config, d, high, &side); !wrong.empty()) return wrong;
+      if (side.kind == SideKind::wall)
+        if (std::string wrong = resolve_wall(*config, d, high, &side); !wrong.empty()) return wrong;
       if (side.kind != SideKind::pressure) continue;
       const OpeningSpec &spec = config->openings[d][high];
-      side.given = {spec.value, 0, 0, {}};
-      const std::string name = "-pressure_" + name_of(d, high);
+      side.given = {0, 0, 0, {}};
+      const std::string name = "-boundary_" + name_of(d, high), option = name + "_pressure";
       if (std::string wrong = resolve_load(spec, name, &side.load); !wrong.empty()) return wrong;
-      if (!spec.table.empty())
-        if (std::string wrong = read_table(spec.table, &side.given); !wrong.empty()) return name + "_table: " + wrong;
-      if (std::string wrong = extend_table(spec, name, name + "_table", spec.table, config->time.end, &side.given);
+      if (std::string wrong = read_course(spec.pressure, &side.given); !wrong.empty()) return option + ": " + wrong;
+      if (std::string wrong = extend_table(spec, name, option, spec.pressure, config->time.end, &side.given);
           !wrong.empty())
         return wrong;
     }
   return opens(config->sides) ? std::string() : check_inflow_balance(*config);
 }
 
-// What comes in through a side: nothing through rigid bodies, and where it is developed the steady flow along a pipe of
-// that section, -lap u = 1 on the open cells of the side with u = 0 on walls and surfaces.
+// The profile of the inflow: 0 in rigid bodies; a developed one is the steady flow along a pipe of that section, -lap u
+// = 1 on the open cells of the boundary with u = 0 on walls and surfaces.
 
 namespace {
 
@@ -174,7 +188,8 @@ struct SidePlane {
   explicit SidePlane(int d) : a(d == 0 ? 1 : 0), b(d == 2 ? 1 : 2) {}
 };
 
-// What cell (i, j) sees beyond its side `high` in direction e: another cell, or a wall, where u is odd, or neither.
+// The neighbour of cell (i, j) beyond its face `high` in direction e: another cell, or a wall, where u is odd, or
+// neither.
 struct Beyond {
   bool cell = false, wall = false;
   int index = 0;
@@ -189,8 +204,8 @@ Beyond beyond(const Config &config, int e, int i, bool high) {
   return {false, kind == SideKind::wall || kind == SideKind::inflow, 0};
 }
 
-// Cells of a side that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a regular
-// one.
+// Cells of a boundary that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a
+// regular one.
 struct OpenCells {
   static constexpr int values = 5;
   std::vector<double> all;
@@ -238,7 +253,7 @@ PetscErrorCode find_open_cells(const Config &config, const Domain &domain, const
   PetscFunctionReturn(0);
 }
 
-// The part of a side that no rigid body covers, from the solid fractions of the cells beside it. Collective.
+// The share of a boundary that no rigid body covers, from the solid fractions of the cells beside it. Collective.
 PetscErrorCode measure_open_part(const Domain &domain, const std::vector<Phase> &phases, int d, bool high,
                                  double *part) {
   PetscFunctionBeginUser;
@@ -345,10 +360,10 @@ PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const 
       for (std::size_t cell = 0; cell < profile.size(); ++cell) sum += profile[cell] *= open.open(cell);
       if (!(std::fabs(sum) > 0)) {
         *wrong = std::string("-boundary_") + "xyz"[d] + (high ? "max" : "min") +
-                 ": inflow, but rigid bodies cover what would come in; accepted: a side that is open";
+                 ": rigid bodies cover all of this inflow boundary; accepted: a boundary that is partly open";
         PetscFunctionReturn(0);
       }
-      // A flow rate is that of the whole side, a velocity the mean over its open part.
+      // A flow rate applies to the whole boundary, a velocity is the mean over its open part.
       double part = 1;
       if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(domain, phases, d, high, &part));
       for (double &value : profile) value *= part * double(profile.size()) / sum;

@@ -30,8 +30,6 @@ std::string repeat(const std::string &source, double period, TimeCourse *course)
   return {};
 }
 
-}  // namespace
-
 std::string read_table(const std::string &path, TimeCourse *course) {
   static const RowFormat format{"rows of time,value", {"time", "value"}, {2}, false, "period"};
   std::string text;
@@ -44,6 +42,8 @@ std::string read_table(const std::string &path, TimeCourse *course) {
   };
   return read_rows(path, text, format, add_row, &course->period);
 }
+
+}  // namespace
 
 std::string read_course(const std::string &text, TimeCourse *course) {
   double value;
@@ -58,23 +58,24 @@ std::string extend_table(const OpeningSpec &spec, const std::string &side, const
                          const std::string &file, double end, TimeCourse *course) {
   if (course->table.empty()) {
     if (spec.period == 0 && !spec.hold) return {};
-    return side + (spec.hold ? "_hold" : "_period") + ": has no meaning without a table; accepted: beside a table";
+    return side + (spec.hold ? "_table_hold" : "_table_period") + ": applies only to a table; accepted: with a table";
   }
-  if (spec.hold && spec.period > 0) return side + "_hold: given beside " + side + "_period; accepted: one of them";
+  if (spec.hold && spec.period > 0)
+    return side + "_table_hold: given beside " + side + "_table_period; accepted: one of them";
   const std::string own = file + " says \"# period " + to_text(course->period) + "\"";
   if (spec.hold && course->period > 0)
-    return side + "_hold: " + own + " and cannot be held, too; accepted: false, or a table without a period";
+    return side + "_table_hold: " + own + " and cannot be held, too; accepted: false, or a table without a period";
   if (spec.hold) return {};
   if (spec.period > 0 && course->period > 0 && std::fabs(spec.period / course->period - 1) > round_off)
-    return side + "_period: " + to_text(spec.period) + ", but " + own + "; accepted: the same, or one of them";
-  if (spec.period > 0) return repeat(side + "_period", spec.period, course);
+    return side + "_table_period: " + to_text(spec.period) + ", but " + own + "; accepted: the same, or one of them";
+  if (spec.period > 0) return repeat(side + "_table_period", spec.period, course);
   if (course->period > 0) return repeat(option + ": the period of " + file, course->period, course);
   const double first = course->table.front()[0], last = course->table.back()[0];
   if (first <= 0 && last >= end * (1 - round_off)) return {};
   return option + ": " + file + " goes from time " + to_text(first) + " to " + to_text(last) + ", the run from 0 to " +
          to_text(end) + "; accepted: a table of all the run, " + side +
-         "_period to repeat it (in the file: # period T), or " + side +
-         "_hold true to hold its first and its last value";
+         "_table_period to repeat it (in the file: # period T), or " + side +
+         "_table_hold true to hold its first and its last value";
 }
 
 }  // namespace eulastic

@@ -25,7 +25,7 @@ EULASTIC_CLONES void limit_row(const Edges &e, const Segment &s) {
     const double square = kernels::average4(aa + i, -e.a, -e.b) * kernels::average4(bb + i, -e.a, -e.b);
     const double most = __builtin_sqrt(square > 0 ? square : 0.0);
     const double limited = ab[i] > most ? most : ab[i] < -most ? -most : ab[i];
-    const bool finite = __builtin_fabs(ab[i]) <= std::numeric_limits<double>::max();  // what is not must show
+    const bool finite = __builtin_fabs(ab[i]) <= std::numeric_limits<double>::max();  // keep non-finite values visible
     ab[i] = kernels::average4(phi + i, -e.a, -e.b) < e.threshold || !finite ? ab[i] : limited;
   }
 }

@@ -18,7 +18,7 @@ from checksum import change, checksum, content  # noqa: E402
 from restart_case import FLAT, Restart  # noqa: E402
 
 FEEDER = ("-grid_cells 48,24,1 -grid_length 3,1.5,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax pressure "
-          "-inflow_xmin_velocity 1 -inflow_xmin_profile developed -inflow_xmin_feeder 1.5 -fluid_viscosity .1 -species a "
+          "-boundary_xmin_velocity 1 -boundary_xmin_profile developed -boundary_xmin_generator_length 1.5 -fluid_viscosity .1 -species a "
           "-a_shape sphere -a_radius .2 -a_law membrane -a_surface_shear_modulus .1 -a_placement random -a_count 2 "
           "-initial_velocity_mean 1,0,0 -guard_volume_drift 0 -time_end 100").split()
 
@@ -80,6 +80,16 @@ class Numbers(Restart):
                              (8, -1.), (8, 1e6)):
             self.refuse_changed([*BOXES, "-time_steps_max", 6], path, "bodies_in_boxes", index, value)
 
+    def test_of_receptors_in_boxes(self):
+        case = [*BOXES, *("-adhesion cell-wall -adhesion_cell_wall_density 9 -adhesion_cell_wall_reach .5 -adhesion_cell_wall_rate_on 9 "
+                          "-adhesion_cell_wall_rate_off 1 -adhesion_cell_wall_bond_stiffness .01").split()]
+        self.run_case("run", *case, "-time_steps_max", 4)
+        case += ["-time_steps_max", 6]
+        for value in (-1., .5, numpy.nan, 1e12):
+            self.refuse_changed(case, self.checkpoints()[0], "receptors_in_boxes", 0, value)
+        # The last receptor: its place, its partner, the receptor of that, the pair.
+        for part, value in ((0, numpy.nan), (3, 1e3), (3, -2.), (4, -1.), (5, 1.), (8, numpy.inf)):
+            self.refuse_changed(case, self.checkpoints()[0], "values_in_boxes", part - 10, value, says="receptors_in_boxes")
 
     def test_of_markers_in_boxes(self):
         case = [*BOXES[:BOXES.index("-cell_shear_modulus")], *BOXES[BOXES.index("-cell_shear_modulus") + 2:],
@@ -91,7 +101,7 @@ class Numbers(Restart):
                                 says="membrane_markers")
 
 
-MEMBRANE = ("-grid_cells 16,16,1 -grid_length 2,2,1 -boundary_xmin pressure -boundary_xmax pressure -pressure_xmax_windkessel 1,.1,2 "
+MEMBRANE = ("-grid_cells 16,16,1 -grid_length 2,2,1 -boundary_xmin pressure -boundary_xmax pressure -boundary_xmax_windkessel 1,.1,2 "
             "-boundary_y wall -fluid_viscosity .5 -body_force 1,0,0 -species a,b -a_shape sphere -a_radius .4 -a_centre .9,1.2,0 "
             "-a_law membrane -a_surface_shear_modulus .1 -b_shape sphere -b_radius .3 -b_centre 1.3,.4,0 -b_shear_modulus 1 "
             "-b_viscosity 1 -time_end 100 -time_step .01 -guard_volume_drift 0").split()
@@ -159,8 +169,8 @@ class Files(Restart):
             self.refused(path, says=[str(path), "regular file"])
             self.refused(*scene, "-initial_state", path, says=["-initial_state"])
             self.refused(*scene, "-restart", path, says=["-restart"])
-            self.refused(*FEEDER[:FEEDER.index("-inflow_xmin_velocity") + 1], path, *FEEDER[FEEDER.index("-inflow_xmin_velocity") + 2:],
-                         says=["-inflow_xmin_velocity"])
+            self.refused(*FEEDER[:FEEDER.index("-boundary_xmin_velocity") + 1], path, *FEEDER[FEEDER.index("-boundary_xmin_velocity") + 2:],
+                         says=["-boundary_xmin_velocity"])
         (self.room / "include.opts").write_text("-options_file fifo\n")
         self.refused(self.room / "include.opts", says=["fifo", "regular file"])
 

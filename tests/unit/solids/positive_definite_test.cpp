@@ -1,4 +1,4 @@
-// B stays positive definite in the sense of positive_definite.hpp, and is left alone where it is.
+// B becomes positive definite in the sense of positive_definite.hpp, and does not change where it is.
 #include "solids/positive_definite.hpp"
 #include "support/all_segments.hpp"
 #include "support/polynomials.hpp"
@@ -13,7 +13,7 @@ using namespace eulastic::test;
 
 namespace {
 
-// A body that fills the grid: B = diag + shear of which one edge in three is too much.
+// A body that fills the grid: B = diagonal + shear that is too large on one edge in three.
 struct Body {
   Domain domain;
   Phase phase;
