@@ -109,7 +109,7 @@ class Run:
     bodies     arrays of bodies.h5: time (nt), id, species (nb), centroid (nt, nb, 3), ...
     probes     probes.csv likewise; profile["x"], ["y"], ["z"] profile_x.csv, ..., if they exist
     snapshots  list of Snapshot in the order of time
-    adhesion_bonds, adhesion_events  of adhesion_bonds.csv, ... likewise as series, read at first use; None without adhesion
+    adhesion_bonds, adhesion_events  adhesion_bonds.csv, ... as series, read at first use; None without adhesion
     """
 
     def __init__(self, directory):

@@ -557,7 +557,7 @@ PetscErrorCode FreeBodies::place_markers() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodies::forget_unresolved(const std::vector<double> &trace, long *count) {
+PetscErrorCode FreeBodies::reset_unresolved(const std::vector<double> &trace, long *count) {
   PetscFunctionBeginUser;
   *count = 0;
   bool any = false;
@@ -565,7 +565,7 @@ PetscErrorCode FreeBodies::forget_unresolved(const std::vector<double> &trace, l
   if (!any) PetscFunctionReturn(0);
   for (Body &body : bodies_) {
     if (!body.phase.material.elastic() || !may_be_unresolved(trace[body.species], domain_->dimension())) continue;
-    const long found = eulastic::forget_unresolved(body.box, body.phase);
+    const long found = eulastic::reset_unresolved(body.box, body.phase);
     if (found > 0) {
       PetscCall(extend(&body));
       PetscCall(find_force(&body));

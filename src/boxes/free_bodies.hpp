@@ -1,6 +1,6 @@
-// Elastic bodies, membranes and drops that are not attached and never merge with others: each lies in a box of its own,
-// an aligned block of the grid around the body, which is whole on one rank. Between the velocity that comes from the
-// grid and the force that goes back a body needs no message: docs/architecture.md.
+// Elastic bodies, membranes and drops that are not anchored and never merge with others: each lies in a box of its own,
+// an aligned block of the grid around the body, which is complete on one rank. Between receiving the velocity and
+// sending the force a body needs no message: docs/architecture.md.
 #pragma once
 
 #include "base/events.hpp"
@@ -59,18 +59,18 @@ public:
   /// Gives every body of this rank to one of `ranks`, in their order; `species`: phases with materials and rules of
   /// all. Collective.
   PetscErrorCode give(const std::vector<int> &ranks, const std::vector<Phase> &species);
-  /// Takes bodies of this rank away, by their places in bodies(), ascending; follow() comes next, on all ranks.
+  /// Removes bodies of this rank, by their positions in bodies(), ascending; follow() must come next, on all ranks.
   void remove(const std::vector<std::size_t> &which);
   void clear();
 
   /// Whether no wall holds the fluid, so that a net force of surfaces would move all of it, and where rigid bodies are
   /// that stay, solid fractions on the grid; before follow(), if any species has a surface that exerts forces.
   void set_surroundings(bool drifts, const std::vector<const Phase *> &rigid);
-  /// Makes boxes anew where bodies have come near an end of theirs; once after bodies were added. Collective.
+  /// Fits all boxes again if a body has come close to the end of its box; once after bodies were added. Collective.
   PetscErrorCode follow();
   /// B_s of membranes from B of their bodies, MembraneMechanics::start().
   PetscErrorCode start_membranes();
-  /// Markers on the membranes that have none and want some; they keep the strain that they have.
+  /// Sets markers on the membranes that need them and have none; their strain is kept.
   PetscErrorCode place_markers();
   struct Step {
     double time;  ///< of the velocity
@@ -80,16 +80,16 @@ public:
   /// Moves all bodies over dt with a velocity on the grid's faces, of the middle of the step, and finds their forces.
   /// `unresolved`: of all ranks, MembraneMechanics::move(). Collective.
   PetscErrorCode advance(const Step &step, const Field &velocity, long *unresolved);
-  /// Adds so many times the force per mass to fields of the grid. Collective.
+  /// Adds the force per mass, times a factor, to fields of the grid. Collective.
   PetscErrorCode add_forces(const std::vector<WeightedTarget> &targets);
   /// The mean over the domain of the force per mass, of bending and surface tension where it would drive all of the
   /// fluid: that of the discretisation alone.
   const Real3 &mean_force() const noexcept { return mean_force_; }
   /// Sets `rows`, one value for each row of this rank's cells, where add_forces() may add anything.
   void mark_rows(std::vector<char> *rows) const { exchange_.mark_rows(rows); }
-  /// Mends B where the grid does not resolve it (solids/unresolved.hpp). `trace`: the largest tr B of every species;
+  /// Resets B where the grid does not resolve it (solids/unresolved.hpp). `trace`: the largest tr B of every species;
   /// `count`: centres of all ranks. Collective.
-  PetscErrorCode forget_unresolved(const std::vector<double> &trace, long *count);
+  PetscErrorCode reset_unresolved(const std::vector<double> &trace, long *count);
 
   const std::vector<Body> &bodies() const noexcept { return bodies_; }
   /// Of the body at a place in bodies().
@@ -128,7 +128,7 @@ public:
   }
 
 private:
-  /// What a thread needs to work on a body.
+  /// Work space of one thread for a body.
   struct Tools {
     InterfaceTransport interface;
     SolidTransport solids;

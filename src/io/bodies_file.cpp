@@ -53,7 +53,7 @@ bool write_bodies(hid_t file, const BodySpecies &bodies) {
          write_text_attribute(id.get(), "checksum", checksum_text(checksum(ids.data(), ids.size(), 0)));
 }
 
-// Empty, or what was wrong: then nothing is left of the copy.
+// Returns an error text, or nothing; after an error the copy is removed.
 std::string copy_file(const std::string &path, const std::string &target) {
   std::error_code error, ignored;
   std::filesystem::copy_file(path, target, std::filesystem::copy_options::overwrite_existing, error);
@@ -157,7 +157,7 @@ PetscErrorCode BodiesFile::flush() {
   PetscFunctionReturn(0);
 }
 
-// What waits of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
+// Buffered rows of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
 PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *values) const {
   PetscFunctionBeginUser;
   const std::size_t rows = times_.size();

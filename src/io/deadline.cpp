@@ -6,7 +6,7 @@
 namespace eulastic {
 namespace {
 
-// Seconds: far more than any file system needs. In parts: a process that is stopped for an hour, by a batch system
+// Seconds: far more than any file system takes. In parts: a process that is stopped for an hour, by a batch system
 // or a lid that is closed, finds one part gone when it goes on.
 constexpr unsigned patience = 300, part = 5;
 std::string line;

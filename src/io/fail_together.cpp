@@ -10,7 +10,7 @@ namespace {
 
 constexpr double patience = 10;  // seconds
 
-// Ends the job if the others do not come: they wait, inside HDF5 or MPI-IO, for the rank that has failed alone.
+// Ends the job if the other ranks do not arrive: they wait inside HDF5 or MPI-IO for the rank that has failed alone.
 PetscErrorCode wait_for_others(MPI_Comm comm, MPI_Request *request, int rank, const std::string &problem) {
   int there = 0;
   PetscFunctionBeginUser;

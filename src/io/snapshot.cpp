@@ -39,8 +39,8 @@ std::string number_type(Stored stored) {
                                      : "NumberType=\"Float\" Precision=\"8\"";
 }
 
-// Whether tools for pictures get this field, as one of cells: one that is staggered is drawn half a cell too high, and
-// the staggered velocity is left to `velocity`.
+// Whether visualisation tools get this field as cell data: staggered fields would be drawn half a cell too high, and
+// `velocity` replaces the staggered velocity.
 bool is_drawn(const FieldFormat &format) {
   const Staggering &s = format.staggering;
   return s[0] + s[1] + s[2] != 1 && format.plane < 0;

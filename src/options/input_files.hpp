@@ -1,4 +1,4 @@
-// Which files a case is made of, known by what they contain.
+// Input files of a case, identified by a hash of their content.
 #pragma once
 
 #include "scene/config.hpp"
@@ -17,7 +17,7 @@ struct InputFile {
 /// Collective. All files that the options of `config` name, in the order of the options; rank 0 reads them.
 std::vector<InputFile> hash_input_files(const Config &config);
 
-/// Begins the line of options.txt, below that of the option, that has the content of its file.
+/// Begins the line of options.txt, below that of the option, with the hash of its file.
 inline const std::string content_mark = "# content ";
 
 }  // namespace eulastic

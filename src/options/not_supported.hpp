@@ -1,13 +1,13 @@
-// What the program does not do, for those who ask for it by name.
+// Names of features that the program lacks or that have another name.
 #pragma once
 
 #include <string>
 
 namespace eulastic {
 
-/// One clause if `name`, of an option or a word as its value, asks for something that does not exist: why, and what to
-/// use instead; or for something that has another name: that name. Else nothing. README.md, "What it does not do", says
-/// the same.
+/// `name`: of an option, or a word as its value. Returns one clause with a reason and a replacement if it asks for a
+/// missing feature, or the present name of a feature; else nothing. README.md, "What it does not do", has the same
+/// list.
 std::string not_supported(const std::string &name);
 
 }  // namespace eulastic

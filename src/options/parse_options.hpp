@@ -1,4 +1,4 @@
-// From the command line to a validated Config, without PETSc: all ranks together, with the same answer.
+// Parses the command line into a validated Config, without PETSc. Collective; all ranks get the same result.
 #pragma once
 
 #include "options/input_files.hpp"
@@ -15,7 +15,7 @@ struct ParseResult {
   std::vector<InputFile> inputs;      ///< files that options name, of a config without error
   std::vector<std::string> warnings;  ///< one line each, without "eulastic: warning: "
   std::string message;                ///< -help, -version: print to stdout and exit 0
-  bool alone = false;                 ///< nothing was asked for: the message is the usage, the exit code 2
+  bool alone = false;                 ///< no arguments were given: the message is the usage, the exit code 2
   std::string program = "eulastic";   ///< as it was started
   /// For PetscInitialize, program name excluded: PETSc's own options of all sources, behind -skip_petscrc.
   /// PETSC_OPTIONS is in it: unset that variable before PetscInitialize.
@@ -24,8 +24,8 @@ struct ParseResult {
 };
 
 /// `arguments`: the command line without the program name: options and at most one options file. An options file
-/// has lines `-name value`, # starts a comment. The command line wins over `petsc_options` (the environment
-/// variable), which wins over the file. Rank 0 reads the files that they name; nothing is written.
+/// has lines `-name value`, # starts a comment. The command line overrides `petsc_options` (the environment variable),
+/// which overrides the file. Rank 0 reads the files that they name; nothing is written.
 ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options = {});
 
 /// Every option as resolved; itself an options file that gives the same run.

@@ -62,7 +62,7 @@ struct Between {
 
 }  // namespace
 
-void go_between(const Measured &other, double share, Measured *measured) {
+void interpolate_between(const Measured &other, double share, Measured *measured) {
   const Between between{share};
   const double energy = measured->flow.elastic_energy, linear = energy + share * (other.flow.elastic_energy - energy);
   measured->flow.elastic_energy = energy_between(energy, other.flow.elastic_energy, share);
@@ -75,7 +75,7 @@ void go_between(const Measured &other, double share, Measured *measured) {
     for (BodyMeasure &body : measured->bodies) body.elastic_energy *= measured->flow.elastic_energy / linear;
 }
 
-void go_between(const EnergyState &other, double share, EnergyState *energy) {
+void interpolate_between(const EnergyState &other, double share, EnergyState *energy) {
   const Between between{share};
   energy->elastic = energy_between(energy->elastic, other.elastic, share);
   between(energy->surface, other.surface);

@@ -1,4 +1,4 @@
-// Measures at a time between two at which they are known.
+// Interpolates measures between two times.
 #pragma once
 
 #include "diagnostics/energy_budget.hpp"
@@ -6,10 +6,9 @@
 
 namespace eulastic {
 
-/// `measured` of a time goes `share` of the way to `other`, of a later one, of the same bodies and velocity: linearly,
-/// roots of strain energies too. Volume drifts and loads
-/// are left.
-void go_between(const Measured &other, double share, Measured *measured);
-void go_between(const EnergyState &other, double share, EnergyState *energy);
+/// Moves `measured` by the fraction `share` towards `other`, of a later time with the same bodies and velocity:
+/// linearly, for strain energies their square roots. Volume drifts and loads are not changed.
+void interpolate_between(const Measured &other, double share, Measured *measured);
+void interpolate_between(const EnergyState &other, double share, EnergyState *energy);
 
 }  // namespace eulastic

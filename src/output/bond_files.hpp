@@ -12,7 +12,7 @@ public:
   struct Position {
     std::int64_t bonds = 0, events = 0;
   };
-  /// Collective. In the directory of a run that goes on its files are cut back to `position`.
+  /// Collective. At a restart in the same directory its files are cut back to `position`.
   PetscErrorCode open(MPI_Comm comm, const std::string &directory, const Position &position);
   void moved_to(const std::string &directory);
   /// Collective. A row for every event since the last call.

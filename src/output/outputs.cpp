@@ -31,7 +31,7 @@ void Outputs::start(const Config &config, const Domain &domain, Solver *solver, 
   if (4 * apart > solver->limits({}).forcing)
     energy_unknown_ =
         "rows of series.csv are too far apart to resolve the oscillation; use a -series_interval of a quarter period";
-  else if (has_feeders(config.sides) && !config.species.empty())
+  else if (has_inlet_generators(config.sides) && !config.species.empty())
     energy_unknown_ = "bodies that enter through a boundary carry energy that is not counted";
   mach_max_ = position.mach_max;
 }
@@ -196,7 +196,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   StageScope stage(Stage::output);
   const State &state = solver_->state();
   PetscCall(measure());
-  // What could not be written is not tried again: after an fsync that failed the system forgets what it had to write.
+  // A failed write is not repeated: after a failed fsync the system drops the data.
   if (bodies_file_ && summary.exit_reason != "output_failed") PetscCall(bodies_file_->flush());
   summary.method = config_.method.kind == MethodKind::classic ? "classic" : "fast";
   summary.pressure_solver = std::array{"acm", "smac", "ksp"}[static_cast<int>(config_.method.pressure)];

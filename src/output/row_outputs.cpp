@@ -38,7 +38,7 @@ PetscErrorCode Outputs::look(Measured *measured) {
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*domain_, *phases, state.velocity, strain_energy, &m.bodies, boxed));
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
-  // Loads are those of pressure, which lives half a step behind, as the bodies that are seen first.
+  // Loads follow from the pressure, which is half a step behind, as are the bodies that are measured first.
   if (!again && solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
   if (!again) PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
   if (Adhesion *adhesion = solver_->part<Adhesion>(); adhesion && !again) {
@@ -53,7 +53,7 @@ PetscErrorCode Outputs::look(Measured *measured) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
+PetscErrorCode Outputs::measure_energy(const Measured &measured, Row *row) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   const Fluid &fluid = config_.fluid;
@@ -119,7 +119,7 @@ void Outputs::set_energy_scales(EnergyState *energy) const {
 PetscErrorCode Outputs::look(Row *row) {
   PetscFunctionBeginUser;
   PetscCall(look(&row->measured));
-  PetscCall(look_at_energy(row->measured, row));
+  PetscCall(measure_energy(row->measured, row));
   PetscFunctionReturn(0);
 }
 
@@ -140,15 +140,15 @@ PetscErrorCode Outputs::resume_row() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Outputs::see_middle(double dt) {
+PetscErrorCode Outputs::record_middle(double dt) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
   Row next = row_;
   PetscCall(look(&next));
   const double share = row_.dt / (row_.dt + dt);
-  go_between(next.measured, share, &row_.measured);
-  go_between(next.energy, share, &row_.energy);
+  interpolate_between(next.measured, share, &row_.measured);
+  interpolate_between(next.energy, share, &row_.energy);
   PetscCall(measure_drift(&row_.measured));
   PetscCall(measure_strains(&row_.measured));
   mach_max_ = std::max(mach_max_, row_.measured.mach);
@@ -157,8 +157,8 @@ PetscErrorCode Outputs::see_middle(double dt) {
   PetscFunctionReturn(0);
 }
 
-// The pressure lives half a step beside the velocity, as phases do.
-PetscErrorCode Outputs::see_pressure(double dt) {
+// The pressure is half a step behind the velocity, as phases are.
+PetscErrorCode Outputs::record_pressure(double dt) {
   PetscFunctionBeginUser;
   if (row_.sides.empty()) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
@@ -198,7 +198,7 @@ PetscErrorCode Outputs::write_row_now() {
 }
 
 // Loads of rigid bodies are those of the middle of a step: their power at a row is between those of both steps.
-PetscErrorCode Outputs::see_power() {
+PetscErrorCode Outputs::record_power() {
   PetscFunctionBeginUser;
   if (!solver_->rigid() || !solver_->rigid()->moves) PetscFunctionReturn(0);
   const double share = row_.dt / (row_.dt + solver_->state().dt);
@@ -211,7 +211,7 @@ PetscErrorCode Outputs::see_power() {
 
 PetscErrorCode Outputs::write_row() {
   PetscFunctionBeginUser;
-  if (seen_) PetscCall(see_power());
+  if (seen_) PetscCall(record_power());
   waits_ = seen_ = false;
   is_new_ = true;
   Measured &measured = row_.measured;

@@ -8,7 +8,7 @@
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 #include "membranes/membrane_transport.hpp"
-#include "openings/feeders.hpp"
+#include "openings/inlet_generators.hpp"
 #include "output/checkpoint_range.hpp"
 #include "parts/carried_state.hpp"
 
@@ -93,7 +93,7 @@ const char *wrong_length(const CheckpointNumbers &expected, const CheckpointNumb
   return nullptr;
 }
 
-// Of all bodies, on rank 0: what owners know of them, and what feeders do.
+// Numbers of all bodies on rank 0, from their owners and from inlet generators.
 PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
   std::vector<Int3> references;
   std::vector<double> first_volumes;
@@ -104,13 +104,13 @@ PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
   std::vector<long> &cells = numbers->integers["bodies.references"];  // "body_" begins the labels of a species
   for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
   numbers->reals["bodies.first_volumes"] = std::move(first_volumes);
-  const Feeders *feeders = solver.part<Feeders>();
-  if (!feeders) PetscFunctionReturn(0);
+  const InletGenerators *generators = solver.part<InletGenerators>();
+  if (!generators) PetscFunctionReturn(0);
   if (!bodies.like().empty()) numbers->integers["bodies_like"].assign(bodies.like().begin(), bodies.like().end());
   std::vector<long> &inside = numbers->integers["bodies_in_feeders"];
   if (solver.domain().rank() > 0) PetscFunctionReturn(0);
   inside.assign(bodies.bodies(), 0);
-  for (const auto &[label, stretch] : feeders->inside()) inside[label - 1] = stretch + 1;
+  for (const auto &[label, stretch] : generators->inside()) inside[label - 1] = stretch + 1;
   PetscFunctionReturn(0);
 }
 
@@ -121,7 +121,7 @@ PetscErrorCode require_range(const Domain &domain, const std::string &path, cons
 }
 
 PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const Domain &domain, BodyTracker *bodies,
-                           Feeders *feeders) {
+                           InletGenerators *generators) {
   const BodyRange own = BodyRange::of(bodies->bodies(), domain.rank(), domain.ranks());
   const hsize_t all = bodies->bodies(), begin = own.begin;
   std::vector<long> cells(3 * own.size());
@@ -131,17 +131,17 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
   if (all == 0) PetscFunctionReturn(0);
   PetscCall(file->read_share("bodies.references", 3 * all, 3 * begin, &cells));
   PetscCall(file->read_share("bodies.first_volumes", all, begin, &first_volumes));
-  PetscCall(require_range(domain, path, find_absurd_body(cells, first_volumes)));
+  PetscCall(require_range(domain, path, find_invalid_body(cells, first_volumes)));
   for (std::size_t n = 0; n < cells.size(); ++n) references[n / 3][n % 3] = static_cast<int>(cells[n]);
   bodies->set_known(std::move(references), std::move(first_volumes));
-  if (!feeders) PetscFunctionReturn(0);
+  if (!generators) PetscFunctionReturn(0);
   std::vector<long> stretches(own.size());
   std::map<int, int> inside;
   PetscCall(file->read_share("bodies_in_feeders", all, begin, &stretches));
-  PetscCall(require_range(domain, path, find_absurd_feeder(stretches, feeders->count())));
+  PetscCall(require_range(domain, path, find_invalid_generator(stretches, generators->count())));
   for (int b = 0; b < own.size(); ++b)
     if (stretches[b] > 0) inside[own.begin + b + 1] = static_cast<int>(stretches[b]) - 1;
-  PetscCall(feeders->set_inside(inside));
+  PetscCall(generators->set_inside(inside));
   PetscFunctionReturn(0);
 }
 
@@ -177,12 +177,12 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   if (!solver->boxed().exist()) PetscFunctionReturn(0);
   PetscCall(file->read_records(&heads));
   const std::vector<Phase> &phases = solver->state().phases;
-  PetscCall(require_range(domain, path, find_absurd_box(heads.values, domain, solver->bodies(), phases)));
+  PetscCall(require_range(domain, path, find_invalid_box(heads.values, domain, solver->bodies(), phases)));
   PetscCall(require_different(domain, path, solver->bodies().bodies(), heads.values));
   CheckpointRecords receptors{receptors_name, 1, {}};
   if (file->has(receptors_name)) PetscCall(file->read_records(&receptors));
   receptors.values.resize(heads.values.size() / FreeBodies::head);
-  PetscCall(require_range(domain, path, find_absurd_count(receptors_name, receptors.values)));
+  PetscCall(require_range(domain, path, find_invalid_count(receptors_name, receptors.values)));
   std::vector<std::size_t> sizes;
   for (std::size_t b = 0; b < receptors.values.size(); ++b) {
     const double *head = &heads.values[b * FreeBodies::head];
@@ -209,8 +209,8 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
     const double *first = next - static_cast<int>(receptors.values[b]) * Receptor::numbers;
     const std::vector<double> markers(first - static_cast<int>(head[8]) * SurfaceMarker::numbers, first);
     if (wrong.empty())
-      wrong = find_absurd_marker(markers, block, solver->bodies().bodies(), static_cast<int>(phases.size()));
-    if (wrong.empty()) wrong = find_absurd_receptor({first, next}, solver->bodies().bodies(), pairs_of(*solver));
+      wrong = find_invalid_marker(markers, block, solver->bodies().bodies(), static_cast<int>(phases.size()));
+    if (wrong.empty()) wrong = find_invalid_receptor({first, next}, solver->bodies().bodies(), pairs_of(*solver));
     if (!solver->part<Adhesion>()) packed.resize(packed.size() - (next - first));
   }
   PetscCall(require_range(domain, path, wrong));
@@ -237,7 +237,7 @@ PetscErrorCode load_markers(CheckpointFile *file, const std::string &path, Solve
   PetscCall(file->read_records(&records));
   const Extent whole{{0, 0, 0}, domain.domain_cells()};
   const int bodies = solver->bodies().bodies(), species = static_cast<int>(solver->state().phases.size());
-  PetscCall(require_range(domain, path, find_absurd_marker(records.values, whole, bodies, species)));
+  PetscCall(require_range(domain, path, find_invalid_marker(records.values, whole, bodies, species)));
   for (std::size_t n = 0; n < records.values.size(); n += SurfaceMarker::numbers)
     markers.push_back(SurfaceMarker::unpacked(&records.values[n]));
   solver->state().markers.clear();
@@ -298,17 +298,17 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &run_position, const
 
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
   const Domain &domain = solver->domain();
-  Feeders *feeders = solver->part<Feeders>();
+  InletGenerators *generators = solver->part<InletGenerators>();
   std::vector<long> forgotten, like;
   PetscFunctionBeginUser;
   PetscCall(file->read_if_there("forgotten", &forgotten));
-  if (feeders) {
+  if (generators) {
     PetscCall(file->read_if_there("bodies_like", &like));
     solver->bodies().set_like({});
-    PetscCall(require_range(domain, path, find_absurd_link(like, solver->bodies().bodies())));
+    PetscCall(require_range(domain, path, find_invalid_link(like, solver->bodies().bodies())));
     solver->bodies().set_like(like);
   }
-  PetscCall(require_range(domain, path, find_absurd_count("forgotten", forgotten)));
+  PetscCall(require_range(domain, path, find_invalid_count("forgotten", forgotten)));
   solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
   CarriedState state;
   PetscCall(solver->carry(&state));
@@ -318,8 +318,8 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
   PetscCall(fail_together(domain.comm(), wrong ? path + ": " + wrong + " belongs to another case" : std::string()));
-  PetscCall(require_range(domain, path, find_absurd_number(numbers)));
-  PetscCall(load_bodies(file, path, domain, &solver->bodies(), feeders));
+  PetscCall(require_range(domain, path, find_invalid_number(numbers)));
+  PetscCall(load_bodies(file, path, domain, &solver->bodies(), generators));
   solver->clear_pressure_memory();  // the file may know of fewer increments
   for (Phase &phase : solver->state().phases) phase.empty(domain, bool(phase.label));  // of the scene's start
   PetscCall(load_boxes(file, path, solver));

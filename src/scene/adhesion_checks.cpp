@@ -75,9 +75,9 @@ std::string check_species_of(const Config &config, const AdhesionPair &pair) {
     return "-adhesion: the first species of " + pair.name + " needs " + needed;
   if (pair.to_wall() || needs(pair.second).empty()) return {};
   const SpeciesSpec &spec = config.species[pair.second];
-  if (spec.law == Law::rigid || spec.material().attached) return {};
+  if (spec.law == Law::rigid || spec.material().anchored) return {};
   return "-adhesion: the second species of " + pair.name + " needs " + needs(pair.second) +
-         ", or to be rigid or attached";
+         ", or to be rigid or anchored";
 }
 
 std::string check_pair(const Config &config, const AdhesionPair &pair) {
@@ -93,10 +93,10 @@ std::string check_pair(const Config &config, const AdhesionPair &pair) {
   for (int d = 0; d < (config.grid.cells[2] == 1 ? 2 : 3); ++d)
     shortest = std::min(shortest, config.grid.length[d] / config.grid.cells[d]);
   const bool on_grid = !pair.to_wall() && (config.species[pair.second].law == Law::rigid ||
-                                           config.species[pair.second].material().attached);
+                                           config.species[pair.second].material().anchored);
   const std::string region = option_of(pair, pair.region.file.path.empty() ? "region" : "region_file");
   if (!pair.to_wall() && !on_grid && pair.region.is_given())
-    return region + ": applies only with a wall, or a species that is rigid or attached";
+    return region + ": applies only with a wall, or a species that is rigid or anchored";
   if (on_grid && pair.law.reach > foot_reach * shortest)
     return option_of(pair, "reach") + ": " + to_text(pair.law.reach) + " is more than " + std::to_string(foot_reach) +
            " cells, as far as surfaces on the grid are looked for; accepted: at most " + to_text(foot_reach * shortest);

@@ -1,13 +1,13 @@
-// Where a direction is cut between ranks so that they have about as much to do.
+// Cuts of a direction between ranks that balance their work.
 #pragma once
 
 #include <vector>
 
 namespace eulastic {
 
-/// First unit of each of `parts` ranks along a direction, and the number of units at the end. `cost`: of every unit of
-/// that direction, >= 0, at least `parts` times `least`, which is how many each rank has or more. The largest sum over
-/// a rank is the least that there is, but for what `least` takes; within that the cuts are where sums are most equal.
+/// Returns the first unit of each of `parts` ranks along a direction, followed by the number of units. `cost`: of every
+/// unit of that direction, >= 0, at least `parts` times `least` entries; each rank has at least `least` units. The cuts
+/// minimise the largest sum over a rank; among such cuts the sums are the most equal.
 std::vector<int> equal_cuts(const std::vector<double> &cost, int parts, int least);
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// The warning of membranes that are placed nearer to a wall than a cell.
+// Warns of membranes that are placed less than a cell from a wall.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -6,9 +6,9 @@
 
 namespace eulastic {
 
-/// Collective. `warning`: one line that names the first such body and says what to do; empty if there is none, or with
-/// -initial_state, which may bring bodies of its own. Walls: solid sides of the box, rigid bodies that do not travel,
-/// but those from files. Bodies at random keep a cell free. The same on any number of ranks.
+/// Collective. `warning`: one line that names the first such body and a remedy; empty if there is none, or with
+/// -initial_state, which may define bodies of its own. Walls: solid boundaries of the box and rigid bodies at rest,
+/// except those from files. Random placement keeps a cell free. The same on any number of ranks.
 PetscErrorCode find_membranes_near_walls(MPI_Comm comm, const Config &config, std::string *warning);
 
 }  // namespace eulastic
