@@ -16,10 +16,8 @@ public:
   /// V-cycles, kinematic, between the least and the largest one. `tolerance`: of the residual of each system, relative
   /// to its right-hand side. Collective.
   PetscErrorCode create(const Domain &domain, const BoxSides &sides, double viscosity, double tolerance);
-  explicit operator bool() const { return viscosity_ > 0; }
-
   /// v* = v + W(dt) like super_time_step(), from `step.local`; `step.rigid` must be null. `rate`: M_0, lost. `slope`:
-  /// M_1, or null. Collective.
+  /// M_1, or null. Fails if a system does not converge. Collective.
   PetscErrorCode step(GhostExchange &exchange, const ViscousStep &step, Field &rate, const Field *slope,
                       Field &velocity_star);
   /// How often the last step has evaluated the viscous force.

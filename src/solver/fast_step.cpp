@@ -1,6 +1,7 @@
 #include "solver/fast_step.hpp"
 
 #include "field/open_sides.hpp"
+#include "flow/implicit_viscosity.hpp"
 #include "flow/momentum.hpp"
 #include "flow/projection.hpp"
 #include "flow/super_time_stepping.hpp"
@@ -11,6 +12,11 @@
 
 namespace eulastic {
 
+FastStep::FastStep(Flow *flow, Projection *projection) : Scheme(flow, projection) {}
+FastStep::~FastStep() = default;
+
+std::size_t FastStep::bytes() const { return Scheme::bytes() + (implicit_ ? implicit_->bytes() : 0); }
+
 PetscErrorCode FastStep::start() {
   State &now = flow_.now;
   const int dim = flow_.domain.dimension();
@@ -18,9 +24,10 @@ PetscErrorCode FastStep::start() {
   PetscCall(Scheme::start());
   if (viscosity_ && !flow_.rigid && flow_.spec.viscous == ViscousScheme::rkl) {
     const ViscosityContrast range = contrast({});
-    PetscCall(implicit_.create(flow_.domain, flow_.spec.sides,
-                               std::sqrt(range.least * range.most) / flow_.fluid.density,
-                               flow_.spec.viscous_tolerance));
+    implicit_ = std::make_unique<ImplicitViscosity>();
+    PetscCall(implicit_->create(flow_.domain, flow_.spec.sides,
+                                std::sqrt(range.least * range.most) / flow_.fluid.density,
+                                flow_.spec.viscous_tolerance));
   }
   if (now.phases.empty() || !flow_.spec.linear_force()) PetscFunctionReturn(0);
   flow_.velocity_star = {};
@@ -128,9 +135,9 @@ PetscErrorCode FastStep::advance_viscous_stages(const Fluid &fluid, const Moment
   viscous_step.rigid = flow_.rigid;
   viscous_step.means = flow_.rigid_means;
   if (implicit_) {
-    PetscCall(implicit_.step(flow_.exchange, viscous_step, viscous.rate, flow_.slope ? &viscous.slope : nullptr,
-                             flow_.velocity_star));
-    stages_ += implicit_.products();
+    PetscCall(implicit_->step(flow_.exchange, viscous_step, viscous.rate, flow_.slope ? &viscous.slope : nullptr,
+                              flow_.velocity_star));
+    stages_ += implicit_->products();
     PetscFunctionReturn(0);
   }
   PetscCall(super_time_step(domain, flow_.exchange, viscous_step, viscous, flow_.velocity_star));

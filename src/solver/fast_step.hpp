@@ -2,16 +2,20 @@
 // docs/method.md, sections 2 to 8 and 16.
 #pragma once
 
-#include "flow/implicit_viscosity.hpp"
 #include "solver/scheme.hpp"
+
+#include <memory>
 
 namespace eulastic {
 
+class ImplicitViscosity;
+
 class FastStep final : public Scheme {
 public:
-  using Scheme::Scheme;
+  FastStep(Flow *flow, Projection *projection);
+  ~FastStep() override;
   PetscErrorCode start() override;
-  std::size_t bytes() const override { return Scheme::bytes() + implicit_.bytes(); }
+  std::size_t bytes() const override;
   PetscErrorCode step(double dt, const Look &in_middle, const Look &with_pressure) override;
 
 private:
@@ -21,7 +25,7 @@ private:
   PetscErrorCode advance_viscous_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope);
   PressureRotation rotation() const;
 
-  ImplicitViscosity implicit_;  ///< where viscosities differ, unless there are rigid bodies; else empty
+  std::unique_ptr<ImplicitViscosity> implicit_;  ///< where viscosities differ and there are no rigid bodies; else null
 };
 
 }  // namespace eulastic
