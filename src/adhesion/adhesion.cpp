@@ -2,7 +2,7 @@
 
 #include "base/events.hpp"
 #include "base/philox.hpp"
-#include "parts/carried_state.hpp"
+#include "parts/state.hpp"
 
 #include <algorithm>
 #include <array>

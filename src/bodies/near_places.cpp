@@ -1,7 +1,6 @@
 #include "bodies/near_places.hpp"
 
 #include "base/deliver.hpp"
-#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>

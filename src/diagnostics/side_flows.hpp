@@ -16,7 +16,7 @@ struct SideFlow {
   double flow_rate = 0;  ///< volume into the box per time; 2-D: per depth
   double pressure = 0;   ///< given, or the mean over the open part of the side, extrapolated from two cells
   double power = 0;      ///< of pressure and kinetic energy that come in; without what viscosity does on the side
-  std::string name() const { return std::string{"xyz"[direction]} + (high ? "max" : "min"); }
+  std::string name() const { return side_name(direction, high); }
 };
 
 /// All sides that volume crosses, in the order xmin, xmax, ymin ...

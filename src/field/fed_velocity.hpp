@@ -23,9 +23,7 @@ public:
   /// Every value of the plane, ghosts too: visit(local face, value).
   template <class Visit>
   void for_each(const Visit &visit) {
-    for (int k = begin_[2]; k < end_[2]; ++k)
-      for (int j = begin_[1]; j < end_[1]; ++j)
-        for (int i = begin_[0]; i < end_[0]; ++i) visit(Int3{i, j, k}, values_[place(i, j, k)]);
+    for_points({begin_, end_}, [&](int i, int j, int k) { visit(Int3{i, j, k}, values_[place(i, j, k)]); });
   }
 
 private:

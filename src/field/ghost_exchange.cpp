@@ -24,14 +24,6 @@ PetscErrorCode broadcast_sources(PetscSF scatter, const Source *owned, Source *c
   PetscFunctionReturn(0);
 }
 
-// visit(point) for all points begin <= point < end, x fastest.
-template <class Visit>
-void for_block(const Int3 &begin, const Int3 &end, const Visit &visit) {
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j)
-      for (int i = begin[0]; i < end[0]; ++i) visit(Int3{i, j, k});
-}
-
 // Offset in a field of the first point in memory, where its first row begins.
 std::ptrdiff_t first_offset(const Layout &own) { return own.offset(-own.ghosts[0], -own.ghosts[1], -own.ghosts[2]); }
 
@@ -63,17 +55,18 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
     end[d] = n[d] + own.ghosts[d];
   }
   std::vector<Source> sources(own.size), owned, near(std::size_t(near_points[0]) * near_points[1] * near_points[2]);
-  for_block({}, n, [&](const Int3 &p) {
-    owned.push_back({static_cast<PetscInt>(domain.rank()), offset(p), static_cast<PetscInt>(own.size),
+  for_points({{0, 0, 0}, n}, [&](int i, int j, int k) {
+    owned.push_back({static_cast<PetscInt>(domain.rank()), offset({i, j, k}), static_cast<PetscInt>(own.size),
                      static_cast<PetscInt>(own.sy), static_cast<PetscInt>(own.sz)});
   });
   PetscCall(broadcast_sources(scatter, owned.data(), near.data()));
   auto next = near.begin();
-  for_block(near_begin, near_end, [&](const Int3 &p) { sources[offset(p)] = *next++; });
+  for_points({near_begin, near_end}, [&](int i, int j, int k) { sources[offset({i, j, k})] = *next++; });
 
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
-  for_block(begin, end, [&](const Int3 &p) {
+  for_points({begin, end}, [&](int i, int j, int k) {
+    const Int3 p{i, j, k};
     Int3 known;
     for (int d = 0; d < 3; ++d) known[d] = std::clamp<int>(p[d], -width, n[d] + width - 1);
     const Source &source = sources[offset(known)];
@@ -88,7 +81,8 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
                             leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
   PetscCall(broadcast_sources(beyond.get(), sources.data(), sources.data()));
 
-  for_block(begin, end, [&](const Int3 &p) {
+  for_points({begin, end}, [&](int i, int j, int k) {
+    const Int3 p{i, j, k};
     const Source &source = sources[offset(p)];
     const bool is_owned = p[0] >= 0 && p[0] < n[0] && p[1] >= 0 && p[1] < n[1] && p[2] >= 0 && p[2] < n[2];
     if (!is_owned && source.rank >= 0) ghosts->push_back({p, source.rank, source.offset, source.size});

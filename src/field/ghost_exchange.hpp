@@ -5,7 +5,7 @@
 // rows, and the ghosts at their ends are the other end of the same row.
 #pragma once
 
-#include "base/mpi_type.hpp"
+#include "base/petsc.hpp"
 #include "field/field.hpp"
 #include "grid/domain.hpp"
 #include "grid/occupied_rows.hpp"

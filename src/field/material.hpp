@@ -1,12 +1,33 @@
-// What a body is made of.
+// What the fluid and a body are made of.
 #pragma once
 
-#include "field/body_force.hpp"
+#include "grid/box.hpp"
 #include "kernels/membrane_law.hpp"
 
+#include <cmath>
 #include <vector>
 
 namespace eulastic {
+
+/// f cos(frequency t + phase).
+struct BodyForce {
+  Real3 force{};         ///< length / time^2
+  double frequency = 0;  ///< angular
+  double phase = 0;      ///< rad
+  bool acts() const { return force != Real3{}; }
+  Real3 at(double time) const {
+    const double factor = frequency == 0 && phase == 0 ? 1.0 : std::cos(frequency * time + phase);
+    return {force[0] * factor, force[1] * factor, force[2] * factor};
+  }
+};
+
+struct Fluid {
+  double density = 1;    ///< rho
+  double viscosity = 1;  ///< mu, dynamic; of bodies too, unless they have their own
+  bool inertia = true;   ///< false drops v.grad v
+  BodyForce body_force;
+  double kinematic_viscosity() const { return viscosity / density; }
+};
 
 /// red_cell: of options alone, a membrane with the numbers of a red blood cell.
 enum class Law { neo_hookean, mooney_rivlin, membrane, red_cell, rigid };
@@ -44,5 +65,10 @@ struct Material {
   /// Whether anything is remembered beside phi: B, or B_s of a membrane.
   bool carries_tensor() const { return elastic() || is_membrane(); }
 };
+
+/// Dynamic viscosity of a body.
+inline double viscosity_of(const Material &material, const Fluid &fluid) {
+  return material.viscosity > 0 ? material.viscosity : fluid.viscosity;
+}
 
 }  // namespace eulastic

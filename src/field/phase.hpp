@@ -3,23 +3,19 @@
 // the species is empty.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/carried_tensor.hpp"
+#include "field/ghost_exchange.hpp"
 #include "field/material.hpp"
+#include "field/sides.hpp"
 #include "field/surface_marker.hpp"
+#include "grid/box.hpp"
 #include "grid/occupied_rows.hpp"
 
 #include <string>
 #include <vector>
 
 namespace eulastic {
-
-/// A block of cells, begin to end in every direction.
-struct Extent {
-  Int3 begin, end;
-  Int3 middle() const {
-    return {begin[0] + (end[0] - begin[0]) / 2, begin[1] + (end[1] - begin[1]) / 2, begin[2] + (end[2] - begin[2]) / 2};
-  }
-};
 
 struct Phase {
   std::string species;  ///< name of the species it belongs to
@@ -56,6 +52,19 @@ struct BodyInBox {
   const Phase *phase;                         ///< of this body alone
   const std::vector<SurfaceMarker> *markers;  ///< of a membrane
   const Field *velocity = nullptr;            ///< on the faces of the box, where it is wanted
+};
+
+struct PhasePlace {
+  const Box *box;
+  const BoxSides *sides;
+  /// Null where the box is whole on this rank: its ghosts are behind sides of the domain, or hold what is far from
+  /// bodies.
+  GhostExchange *exchange;
+
+  /// Ghosts that other ranks own; `rows` as in WantedGhosts.
+  PetscErrorCode exchange_ghosts(Field &field, int width, const OccupiedRows *rows) const;
+  /// Ghosts of B from other ranks and behind sides.
+  PetscErrorCode update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const;
 };
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// A material point of a membrane, by which its surface knows its shape at rest.
+// Points of surfaces: markers by which a membrane knows its shape at rest, and samples of what surfaces do.
 #pragma once
 
 #include "grid/box.hpp"
@@ -21,6 +21,23 @@ struct SurfaceMarker {
   /// All of it, exactly.
   std::array<double, numbers> packed() const;
   static SurfaceMarker unpacked(const double *values);
+};
+
+/// Of all phases together; 2-D: per unit depth.
+struct SurfaceEnergy {
+  double energy = 0;  ///< sum of sigma times the area of the planes that transport cuts cells with, and of membranes
+  double power = 0;   ///< minus that of the forces: flow to surfaces
+};
+
+/// A cell at a surface.
+struct SurfaceSample {
+  int label;
+  Int3 place;      ///< local
+  double delta;    ///< of the surface, 1/length
+  double rest;     ///< the same of what the surface was at rest
+  double stretch;  ///< larger principal stretch along the surface
+  Real3 velocity;  ///< at its centre
+  double shear_energy, area_energy, bending_energy;
 };
 
 }  // namespace eulastic

@@ -2,12 +2,17 @@
 // (13).
 #pragma once
 
+#include "base/petsc.hpp"
+#include "field/field.hpp"
 #include "parts/flow.hpp"
 #include "pressure/pressure_solver.hpp"
 
 #include <memory>
 
 namespace eulastic {
+
+/// D* = rho div v* at centres. Needs one ghost of v*. Rows are wrapped by one around a periodic x.
+PetscErrorCode compute_divergence(const Box &box, double density, const Field &velocity_star, Field &divergence);
 
 /// Of the rotational update of the pressure: the factor of D*, and that of the place's kinematic viscosity times D*.
 struct PressureRotation {

@@ -49,7 +49,7 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   const int held = found[0];
   if (held >= 0)
     flow_.crowded = "-species " + flow_.now.phases[held / 6].species + ": solid within " + std::to_string(free_layers) +
-                    " cells of side " + "xyz"[held % 6 / 2] + (held % 2 ? "max" : "min") +
+                    " cells of side " + side_name(held % 6 / 2, held % 2 != 0) +
                     ", which volume crosses; accepted: bodies that stay further inside, or a longer box";
   if (held < 0 && found[3] > 0) PetscCall(take_out_boxed(leaving));
   if (held < 0 && found[1] > 0) PetscCall(take_out_bodies(true));

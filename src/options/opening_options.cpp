@@ -1,14 +1,12 @@
-#include "options/opening_options.hpp"
+#include "options/option_rows.hpp"
 
 namespace eulastic {
 namespace {
 
 // The rows from `first` on mean something only on sides of that kind.
 void only_on(Rows &rows, std::size_t first, Config &config, SideKind kind, const std::string &side, int d, int high) {
-  for (std::size_t r = first; r < rows.rows.size(); ++r) {
-    rows.rows[r].only_with = "-boundary_" + side + (kind == SideKind::inflow ? " inflow" : " pressure");
-    rows.rows[r].applies = [&config, kind, d, high] { return config.boundary.is(kind, d, high); };
-  }
+  rows.limit(first, "-boundary_" + side + (kind == SideKind::inflow ? " inflow" : " pressure"),
+             [&config, kind, d, high] { return config.boundary.is(kind, d, high); });
 }
 
 // What happens where a table of the side ends.
@@ -81,7 +79,7 @@ void add_openings(Rows &rows, Config &config) {
   rows.group = "Inflow, pressure and outflow boundaries";
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2; ++high) {
-      const std::string side = std::string{"xyz"[d]} + (high ? "max" : "min");
+      const std::string side = side_name(d, high);
       add_inflow(rows, config, side, d, high);
       add_pressure(rows, config, side, d, high);
     }

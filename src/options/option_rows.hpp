@@ -4,6 +4,7 @@
 
 #include "io/option_values.hpp"
 #include "options/option_table.hpp"
+#include "scene/config.hpp"
 
 #include <algorithm>
 
@@ -19,7 +20,14 @@ inline std::string several(std::size_t count, const std::string &noun, const Ran
          range.text() + (count == 1 ? "" : ", separated by commas");
 }
 
-// Makes rows out of members: the type of the member gives kind, arity and how it is read and written.
+/// "1,2,3" of so many values.
+template <class T, class Text>
+std::string list(const T *values, std::size_t count, const Text &text) {
+  Names items;
+  for (std::size_t i = 0; i < count; ++i) items.push_back(text(values[i]));
+  return join(items, ",");
+}
+
 class Rows {
 public:
   std::vector<Option> rows;
@@ -39,11 +47,7 @@ public:
     Option &row = add(name, unit, doc);
     row.accepted = several(count, "number", range);
     row.read = [=](const std::string &value) { return read_reals(value, range, target, count); };
-    row.text = [=] {
-      Names items;
-      for (std::size_t i = 0; i < count; ++i) items.push_back(to_text(target[i]));
-      return join(items, ",");
-    };
+    row.text = [=] { return list(target, count, to_text); };
     return row;
   }
   Option &real(const std::string &name, double &target, const Range &range, const std::string &unit,
@@ -60,11 +64,7 @@ public:
     Option &row = add(name, "", doc);
     row.accepted = several(count, "integer", range);
     row.read = [=](const std::string &value) { return read_integers(value, range, target, count); };
-    row.text = [=] {
-      Names items;
-      for (std::size_t i = 0; i < count; ++i) items.push_back(std::to_string(target[i]));
-      return join(items, ",");
-    };
+    row.text = [=] { return list(target, count, [](int n) { return std::to_string(n); }); };
     return row;
   }
   Option &integer(const std::string &name, long &target, const Range &range, const std::string &doc) {
@@ -116,17 +116,31 @@ public:
     for (std::size_t r = first; r < rows.size(); ++r) rows[r].may_change = true;
   }
 
+  /// The rows from `first` on mean something only while `applies` holds, which `only_with` says.
+  void limit(std::size_t first, const std::string &only_with, const std::function<bool()> &applies) {
+    for (std::size_t r = first; r < rows.size(); ++r) {
+      rows[r].only_with = only_with;
+      rows[r].applies = applies;
+    }
+  }
   /// The rows from `first` on mean something only while `target` has one of the `wanted` values. `names` are those
   /// of `-option`.
   template <class T>
   void restrict(std::size_t first, const std::string &option, T &target, const Names &names, std::vector<T> wanted) {
     Names text;
     for (T value : wanted) text.push_back(names[static_cast<int>(value)]);
-    for (std::size_t r = first; r < rows.size(); ++r) {
-      rows[r].only_with = "-" + option + " " + join(text, " or ");
-      rows[r].applies = [&target, wanted] { return std::find(wanted.begin(), wanted.end(), target) != wanted.end(); };
-    }
+    limit(first, "-" + option + " " + join(text, " or "),
+          [&target, wanted] { return std::find(wanted.begin(), wanted.end(), target) != wanted.end(); });
   }
 };
+
+void add_openings(Rows &rows, Config &config);
+
+/// Pairs that -adhesion names, of species that are known. Returns what is wrong, or nothing.
+std::string read_adhesion(const std::string &value, Config *config);
+void add_adhesion(Rows &rows, Config &config);
+
+/// The name of the species is the prefix. With `from_state` the shape need not be given.
+void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state);
 
 }  // namespace eulastic

@@ -1,10 +1,7 @@
 #include "options/option_table.hpp"
 
-#include "options/adhesion_options.hpp"
-#include "options/opening_options.hpp"
 #include "options/option_rows.hpp"
 #include "options/petsc_options.hpp"
-#include "options/species_options.hpp"
 
 #include <set>
 
@@ -42,18 +39,15 @@ void add_walls(Rows &rows, Config &config) {
   rows.group = "Moving walls: U cos(frequency t + phase)";
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
-      const std::string wall = std::string("wall_") + "xyz"[d] + (side ? "max" : "min");
+      const std::string wall = "wall_" + side_name(d, side);
       WallMotion &motion = config.sides[d][side].motion;
       const std::size_t first = rows.rows.size();
       rows.real(wall + "_velocity", motion.velocity, any_number, "length/time",
                 "velocity U of the wall; its normal component must be 0");
       rows.real(wall + "_frequency", motion.frequency, not_negative, "1/time", "angular frequency");
       rows.real(wall + "_phase", motion.phase, any_number, "rad", "phase");
-      for (std::size_t r = first; r < rows.rows.size(); ++r) {
-        rows.rows[r].only_with =
-            std::string("-boundary_") + "xyz"[d] + " wall or -boundary_" + "xyz"[d] + (side ? "max" : "min") + " wall";
-        rows.rows[r].applies = [&config, d, side] { return config.boundary.is_wall(d, side); };
-      }
+      rows.limit(first, std::string("-boundary_") + "xyz"[d] + " wall or -boundary_" + side_name(d, side) + " wall",
+                 [&config, d, side] { return config.boundary.is_wall(d, side); });
     }
 }
 
@@ -184,7 +178,7 @@ void add_samples(Rows &rows, Config &config) {
   probes.read = [&samples](const std::string &value) { return read_points(value, &samples.probes); };
   probes.text = [&samples] {
     Names points;
-    for (const Real3 &p : samples.probes) points.push_back(to_text(p[0]) + "," + to_text(p[1]) + "," + to_text(p[2]));
+    for (const Real3 &p : samples.probes) points.push_back(list(p.data(), 3, to_text));
     return join(points, ":");
   };
   for (int d = 0; d < 3; ++d) add_profile(rows, samples.profile[d], d);
@@ -209,9 +203,9 @@ void add_output(Rows &rows, Config &config) {
              "fields in snapshots");
   rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"}, "precision of snapshots");
   rows.choice(
-      "snapshot_format", output.snapshot_format, {"xdmf", "vtkhdf", "vti"},
-      "xdmf: one index of all snapshots; vtkhdf: also a file for each, for ParaView 5.12 and later; vti: also a "
-      "file for each that every version of VTK and ParaView reads, with the wall shear stress always");
+      "snapshot_format", output.snapshot_vti, {"xdmf", "vti"},
+      "xdmf: one index of all snapshots; vti: also a file for each that every version of VTK and ParaView reads, with "
+      "the wall shear stress always");
   rows.real("series_interval", output.series_interval, not_negative, "time",
             "time between rows of series.csv; 0 = default")
       .default_note = "time_end/200";
@@ -226,10 +220,7 @@ void add_checkpoints(Rows &rows, Config &config) {
             "simulated time between checkpoints; 0 = only by wall time and at the end");
   rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
             "wall time between checkpoints; 0 = only by simulated time and at the end");
-  for (std::size_t r = regular; r < rows.rows.size(); ++r) {
-    rows.rows[r].only_with = "-checkpoint_keep > 0";
-    rows.rows[r].applies = [&checkpoint] { return checkpoint.keep > 0; };
-  }
+  rows.limit(regular, "-checkpoint_keep > 0", [&checkpoint] { return checkpoint.keep > 0; });
   rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
                "number of checkpoints that are kept; a complete run leaves one of its end, with 0 none");
   rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",

@@ -1,13 +1,18 @@
 // From the command line to a validated Config, without PETSc: all ranks together, with the same answer.
 #pragma once
 
-#include "options/input_files.hpp"
 #include "scene/config.hpp"
 
 #include <string>
 #include <vector>
 
 namespace eulastic {
+
+struct InputFile {
+  std::string option;   ///< that names it, without the dash
+  std::string path;     ///< as in options.txt
+  std::string content;  ///< 16 hexadecimal digits: the same bytes give the same digits
+};
 
 struct ParseResult {
   Config config;
@@ -30,5 +35,8 @@ ParseResult parse(const std::vector<std::string> &arguments, const std::string &
 
 /// Every option as resolved; itself an options file that gives the same run.
 std::string options_text(const ParseResult &result);
+
+/// Begins the line of options.txt, below that of the option, that has the content of its file.
+inline const std::string content_mark = "# content ";
 
 }  // namespace eulastic

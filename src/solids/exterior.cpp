@@ -1,14 +1,12 @@
 #include "solids/exterior.hpp"
 
 #include "base/events.hpp"
-#include "field/fluid.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace eulastic {
 namespace {

@@ -2,13 +2,20 @@
 // 7. The phase may lie on the grid of all ranks or in a box that is whole on this one.
 #pragma once
 
-#include "field/phase_place.hpp"
+#include "base/petsc.hpp"
+#include "field/phase.hpp"
 #include "solids/exterior.hpp"
 #include "solids/surface_correction.hpp"
+#include "solids/transport.hpp"
 
 #include <cstdint>
 
 namespace eulastic {
+
+/// B_ab^2 <= B_aa B_bb on the edges that evolve, with the means of the diagonal over the four centres around them. The
+/// diagonal itself is kept above 0 by transport_tensor(). Needs B at the centres in one ghost layer, where an edge
+/// beside them evolves; phi in one.
+PetscErrorCode limit_shear(const Box &box, const Phase &phase, Field &tensor);
 
 class SolidTransport {
 public:

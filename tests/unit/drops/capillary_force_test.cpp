@@ -1,7 +1,7 @@
 // CapillaryForce: a drop in a box of its own has the force and the sums of the same drop on the grid, to the bit.
 #include "drops/capillary_force.hpp"
 #include "drops/surface_tension.hpp"
-#include "grid/skipping.hpp"
+#include "grid/occupied_rows.hpp"
 #include "grid/threads.hpp"
 #include "support/interface_scene.hpp"
 

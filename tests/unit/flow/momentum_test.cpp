@@ -1,7 +1,7 @@
 // Carried velocities, the predictor's terms, divergence and correction: exact on polynomials, unequal spacings.
 #include "kernels/momentum.hpp"
 #include "flow/correction.hpp"
-#include "flow/divergence.hpp"
+#include "flow/projection.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 

@@ -1,6 +1,6 @@
 // What the classic step does in fewer passes than its equations have: the same bits as one pass for each.
+#include "flow/projection.hpp"
 #include "flow/correction.hpp"
-#include "flow/divergence.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/momentum.hpp"
 #include "support/polynomials.hpp"

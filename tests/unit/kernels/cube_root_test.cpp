@@ -1,5 +1,5 @@
 // Our cube root against libm's in long double, and the same bits for every vector length.
-#include "kernels/cube_root.hpp"
+#include "kernels/plane.hpp"
 
 #include <gtest/gtest.h>
 

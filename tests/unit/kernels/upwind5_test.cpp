@@ -1,5 +1,5 @@
 // The upwind difference of fifth order: exact for polynomials of fifth degree, upwind, its own mirror image.
-#include "kernels/upwind5.hpp"
+#include "kernels/weno5.hpp"
 
 #include <gtest/gtest.h>
 

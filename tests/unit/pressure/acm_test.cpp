@@ -1,6 +1,6 @@
 // (12) against brute force, its guards, and what one step of the solver does to the divergence.
 #include "pressure/acm.hpp"
-#include "flow/divergence.hpp"
+#include "flow/projection.hpp"
 
 #include "flow/correction.hpp"
 #include "support/polynomials.hpp"
