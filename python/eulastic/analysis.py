@@ -61,7 +61,7 @@ def dimension(run):
 def drops(run):
     """Returns the pressure drops along x, y and z at the rows of series.csv, (3, nt)."""
     series, number = run.series, lambda name, default: float(run.options.get(name, default))
-    swing = numpy.cos(number("body_force_frequency", 0) * series.time + number("body_force_phase", 0))
+    swing = numpy.cos(number("body_force_angular_frequency", 0) * series.time + number("body_force_phase", 0))
     found = number("fluid_density", 1) * numpy.outer(vector(run, "body_force") * run.length, swing)
     for d, axis in enumerate("xyz"):
         for end, sign in (("min", 1), ("max", -1)):

@@ -1,4 +1,5 @@
-"""Surfaces of the bodies of a 3-D run, by VTK: contours of phi, cut where a body crosses an end of the box; and as files."""
+"""Surfaces of the bodies of a 3-D run by VTK, for pictures and as files: contours of phi, cut where a body crosses an end of the
+box."""
 import itertools
 import json
 
@@ -18,30 +19,31 @@ class Contours:
         self.periodic = [not run.is_bounded(d) for d in (2, 1, 0)]  # in z, y, x
 
     def in_species(self, snapshot, field, name):
-        """solid_fraction or body of one species."""
+        """Returns solid_fraction or body, (nz, ny, nx), of one species."""
         return snapshot[field + ("_" + name if len(self.run.species) > 1 else "")]
 
     def bodies(self, snapshot, name, whole=False, planes=()):
-        """(label, surface) of the bodies of a species that is no vessel: a VTK filter that encloses the body's volume. One
-        that crosses a periodic end comes in its parts, or, whole, sticks out; planes cut, too."""
+        """Yields (label, VTK filter) for the bodies of a species that is not a vessel. The surface of the filter encloses the
+        volume of the body. A body that crosses a periodic end is cut there into parts or, if `whole`, continues beyond the box;
+        planes cut it, too."""
         labels = self.in_species(snapshot, "body", name).astype(int)
         for body, piece, begin in body_pieces(self.in_species(snapshot, "solid_fraction", name), labels, self.periodic):
             for part in self.parts(self.contour(piece, begin, enclosing(piece)), piece.shape, begin, whole, planes):
                 yield body, part
 
     def vessel(self, snapshot, name):
-        """The surface phi = 1/2, open where it leaves the box, half a cell beyond."""
+        """Returns the surface phi = 1/2 of a vessel. It is open where it leaves the box, half a cell beyond the end."""
         return self.contour(self.widened(self.in_species(snapshot, "solid_fraction", name)), numpy.full(3, -1))
 
     def widened(self, values):
-        """With one more cell on each side."""
+        """Returns the array with one more cell on each side."""
         for axis in range(3):
             beyond = [(1, 1) if d == axis else (0, 0) for d in range(3)]
             values = numpy.pad(values, beyond, mode="wrap" if self.periodic[axis] else "edge")
         return values
 
     def contour(self, fraction, begin, level=0.5):
-        """phi = level, smoothed; begin: index (k,j,i) of the first cell."""
+        """Returns the smoothed surface phi = level; `begin` is the index (k, j, i) of the first cell."""
         from vtkmodules.util.numpy_support import numpy_to_vtk
         h = self.run.spacing
         image = self.vtk.vtkImageData()
@@ -60,7 +62,7 @@ class Contours:
         return smooth
 
     def parts(self, surface, shape, begin, whole, planes):
-        """The surface as it is, or cut at the ends of the box that it crosses, once for each; and cut by the planes."""
+        """Yields the surface, or its parts if it crosses ends of the box; planes cut it, too."""
         planes, shifts = list(planes), []
         for d, (first, count, n, periodic) in enumerate(zip(begin[::-1], shape[::-1], self.run.cells, self.periodic[::-1])):
             low, high = first + 2 < 0, first + count - 2 > n  # two cells around a body are empty
@@ -86,28 +88,28 @@ class Contours:
             yield part
 
     def plane(self, d, place, towards):
-        """What lies towards +1 or -1 of `place` along d stays."""
+        """Returns a VTK plane that cuts at `place` along d and keeps the side towards +1 or -1."""
         plane = self.vtk.vtkPlane()
         plane.SetOrigin(*(place if axis == d else 0 for axis in range(3)))
         plane.SetNormal(*(towards if axis == d else 0 for axis in range(3)))
         return plane
 
     def at_points(self, surface, field):
-        """A field of cells (nz, ny, nx) at the points of a vtkPolyData, as a VTK array."""
+        """Returns a field of cells (nz, ny, nx) at the points of a vtkPolyData as a VTK array."""
         from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
         places = vtk_to_numpy(surface.GetPoints().GetData()) / self.run.spacing - 0.5
         return numpy_to_vtk(sample(field, places, self.periodic), deep=1)
 
     def stress_at_points(self, surface, snapshot):
-        """Size of the shear stress on vessels and obstacles at the points of a vtkPolyData, as a VTK array."""
+        """Returns the magnitude of the shear stress on vessels and obstacles at the points of a vtkPolyData as a VTK array."""
         from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
         places = vtk_to_numpy(surface.GetPoints().GetData()) / self.run.spacing + 0.5
         return numpy_to_vtk(at_points(spread(self.widened(snapshot.surface_shear_stress())), places), deep=1)
 
     def all_surfaces(self, snapshot, field="", whole=False):
-        """vtkPolyData of triangles: all bodies and vessels. Of cells `body`, the label (0 of vessels), and `species`, 1, 2,
-        ... in the order of `species_names`, the strings of the whole; of points `field`, and `wall_shear_stress`, its size, where
-        the snapshot has it: 0 on bodies that move."""
+        """Returns a vtkPolyData of triangles with all bodies and vessels. Data of cells are `body`, the label (0 for vessels),
+        and `species`, 1, 2, ... in the order of the strings `species_names`. Data of points are `field`, and `wall_shear_stress`,
+        the magnitude of that stress, if the snapshot has it; it is 0 on moving bodies."""
         from vtkmodules.util.numpy_support import numpy_to_vtk
         vtk, names = self.vtk, self.run.species
         together, values = vtk.vtkAppendPolyData(), derived.field(snapshot, field) if field else None
@@ -143,8 +145,8 @@ class Contours:
         return together.GetOutput()
 
     def write(self, snapshots, kind, folder, field="", whole=False):
-        """surfaces_NNNNNN.vtp or .stl in `folder` for each snapshot, under its number, and surfaces.vtp.series, the list of
-        them with times for ParaView; yields each (snapshot, path). OSError where a file cannot be written."""
+        """Writes surfaces_NNNNNN.vtp or .stl for each snapshot, with its number, into `folder`, and surfaces.vtp.series, their
+        list with times for ParaView. Yields each (snapshot, path). Raises OSError if a file cannot be written."""
         folder.mkdir(parents=True, exist_ok=True)
         listed = []
         for snapshot in snapshots:

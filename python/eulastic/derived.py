@@ -1,5 +1,5 @@
-"""Fields of a snapshot for pictures, all at the centres of cells, (nz, ny, nx): those of the file and what follows from
-them. Their names are those of outputs.md, and speed, vorticity_x, _y, _z."""
+"""Fields of a snapshot for pictures, all at the centres of cells, (nz, ny, nx): those of the file, and fields that are computed
+from them. The names are those of docs/outputs.md, and speed, vorticity_x, vorticity_y and vorticity_z."""
 import numpy
 
 QUANTITIES = {"speed": "velocity", "velocity": "velocity", "vorticity": "rate", "pressure": "pressure", "wall": "pressure"}
@@ -7,7 +7,7 @@ SIGNED = "velocity", "vorticity", "pressure"
 
 
 def names(snapshot):
-    """Of all fields that `field` knows of this snapshot."""
+    """Returns the names of all fields that `field` can compute from this snapshot."""
     own = [name for name in snapshot.fields if not name.startswith(("velocity", "wall_shear_stress_"))]
     if "velocity" in snapshot:
         own += ["speed", *(f"{what}_{d}" for what in ("velocity", "vorticity") for d in "xyz")]
@@ -15,7 +15,7 @@ def names(snapshot):
 
 
 def quantity(name):
-    """Of its unit: velocity, rate, pressure, or None where there is none."""
+    """Returns the kind of unit of a field: velocity, rate, pressure, or None for a pure number."""
     return QUANTITIES.get(name.split("_")[0])
 
 
@@ -24,8 +24,8 @@ def is_signed(name):
 
 
 def field(snapshot, name):
-    """(nz, ny, nx). KeyError, with the names that there are, if it is none of them. Staggered components of B are given
-    where they are, half a cell below."""
+    """Returns a field (nz, ny, nx). KeyError lists the accepted names. Staggered components of B are not averaged: they lie half
+    a cell below the centres."""
     if name not in names(snapshot):
         raise KeyError(f"{name}; accepted: {', '.join(names(snapshot))}")
     if name == "speed":
@@ -39,7 +39,8 @@ def field(snapshot, name):
 
 
 def vorticity(snapshot, d):
-    """Component d of curl v, from the velocity at the centres; second order, one-sided beside what is not periodic."""
+    """Returns component d of curl v from the velocity at the centres, by central differences of second order, one-sided beside
+    boundaries that are not periodic."""
     first, second = (d + 1) % 3, (d + 2) % 3
     velocity = snapshot.velocity()
     return slope(snapshot.run, velocity[second], first) - slope(snapshot.run, velocity[first], second)
@@ -55,7 +56,7 @@ def slope(run, values, d):
 
 
 def least(snapshot, name):
-    """What is less than this, in size, is round-off."""
+    """Returns the magnitude below which values are round-off."""
     speed = numpy.linalg.norm(snapshot.velocity(), axis=0).max() if "velocity" in snapshot else 0
     scale = {"velocity": speed, "rate": speed / snapshot.run.length.max(),
              "pressure": float(snapshot.run.options.get("fluid_density", 1)) * speed**2}.get(quantity(name), 1)
@@ -63,8 +64,8 @@ def least(snapshot, name):
 
 
 def limits(name, values, floor):
-    """Ends of a colour scale: 0 in the middle where a sign matters and both are there, else 0 at one end of what is not
-    negative."""
+    """Returns the ends of a colour scale. A field with both signs has 0 in the middle; a field that is never negative begins at
+    0."""
     low, high = float(values.min()), float(values.max())
     if not numpy.isfinite([low, high]).all() or max(-low, high) <= floor:
         return -max(floor, 1e-300), max(floor, 1e-300)

@@ -1,4 +1,4 @@
-"""Where the eye is, and what is written around a picture: the base of Scene."""
+"""Position of the camera, and the labels around a picture: the base class of Scene."""
 import pathlib
 
 import matplotlib
@@ -10,25 +10,25 @@ from .rounding import round_down
 ANGLE = 28  # of view, degrees
 INK = 0.15, 0.15, 0.2
 FONT = str(pathlib.Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans.ttf")  # VTK's own has no rho
-WIDTH = 1500  # of a picture, whose height follows from the box
+WIDTH = 1600  # of a picture, whose height follows from the box
 
 
 class Framed:
     def direction(self):
-        """From the box to the eye."""
+        """Returns the direction from the box to the camera."""
         azimuth, elevation = numpy.radians(self.look.camera)
         return numpy.array([numpy.sin(azimuth) * numpy.cos(elevation), numpy.sin(elevation),
                             numpy.cos(azimuth) * numpy.cos(elevation)])
 
     def axes(self):
-        """To the right and up in the picture."""
+        """Returns the directions to the right and up in the picture."""
         towards = self.direction()
         right = numpy.cross([0, 1, 0] if abs(towards[1]) < 0.999 else [0, 0, -1], towards)
         right /= numpy.linalg.norm(right)
         return right, numpy.cross(towards, right)
 
     def corners(self):
-        """Of all that must be seen: the box, and the line of scale and arrow below it."""
+        """Returns the corners of everything that must be visible: the box, and the line with scale and arrow below it."""
         points = numpy.array(numpy.meshgrid(*([0, x] for x in self.run.length))).reshape(3, -1).T
         return numpy.concatenate((points, points - [0, 2.2 * self.gap(), 0])) if self.look.words else points
 
@@ -36,20 +36,21 @@ class Framed:
         return 0.05 * min(self.run.length.max(), 2 * self.run.length[1])
 
     def seen(self, eye):
-        """Places of the corners in tangents of the angle at the eye: (n, 2)."""
+        """Returns the corners as tangents of the angle at the camera, (n, 2)."""
         way = self.corners() - eye
         depth = -(way @ self.direction())
         return numpy.stack([way @ axis / depth for axis in self.axes()], axis=1)
 
     def frame(self):
-        """Left, right, bottom, top of what the box may fill, -1 ... 1: outside are the scales."""
+        """Returns left, right, bottom and top of the part of the picture for the box, in -1 ... 1; the labels are outside."""
         if not self.look.words:
             return -0.98, 0.98, -0.98, 0.98
         left = -0.72 if self.stress > 0 else -0.96
         return left, 0.74 if self.look.behind or self.look.field or self.tension else 0.96, -0.9, 0.86
 
     def eye(self, aspect):
-        """Where the box just fills the frame; aspect: width over height, None if the height shall follow."""
+        """Returns the position of the camera at which the box just fills the frame. `aspect` is width over height, or None if the
+        height is to follow from the box."""
         left, right, bottom, top = self.frame()
         half = numpy.tan(numpy.radians(ANGLE / 2))
         eye = self.run.length / 2 + 2 * numpy.linalg.norm(self.run.length) * self.direction()
@@ -82,7 +83,9 @@ class Framed:
         renderer.ResetCameraClippingRange()
 
     def letters(self, part):
-        return max(11, int(numpy.sqrt(numpy.prod(self.window.GetSize())) / part))
+        """Height of letters in pixels: by the width, as pictures are shown as wide as a column of text, less in very flat ones."""
+        width, height = self.window.GetSize()
+        return max(11, int(min(width, 2.2 * height) / part))
 
     def add_words(self, renderer, snapshot):
         from .scene import GREENS
@@ -103,7 +106,7 @@ class Framed:
         self.add_scale(renderer, snapshot)
 
     def add_scale(self, renderer, snapshot):
-        """A length on the lower edge in front, which is the nearest one, and where the fluid goes on average."""
+        """Adds a length on the lower front edge of the box, and an arrow in the direction of the mean flow."""
         place = numpy.array([0, -self.gap(), self.run.length[2]])
         length = round_down(self.run.length[0] / 4)
         line = self.vtk.vtkLineSource()
@@ -131,7 +134,7 @@ class Framed:
         self.add_below(renderer, "flow", end, end + [numpy.sign(mean[0]) * size, 0, 0])
 
     def add_below(self, renderer, words, *ends):
-        """Words under a line in space, clear of its lower end."""
+        """Adds text below a line in space, clear of the lower end of the line."""
         (x0, y0), (x1, y1) = (self.on_screen(renderer, end) for end in ends)
         self.add_text(renderer, words, ((x0 + x1) / 2, min(y0, y1) - self.letters(150)), self.letters(52), "Centered")
 

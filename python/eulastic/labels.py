@@ -1,4 +1,4 @@
-"""What scripts that draw a run share: their options, labels with units, and one line where there is no run."""
+"""Options, labels with units, and error messages that the scripts for pictures share."""
 import argparse
 import pathlib
 import re
@@ -8,7 +8,7 @@ from .reading import Run
 
 
 def open_run(directory):
-    """The run, for a script: where there is none, the script ends with one line."""
+    """Returns the Run in a directory. If there is none, the script ends with one line."""
     try:
         return Run(directory)
     except FileNotFoundError as error:
@@ -16,7 +16,7 @@ def open_run(directory):
 
 
 def of_column(name):
-    """The quantity that a column of series.csv is; None of a plain number."""
+    """Returns the quantity of a column of series.csv; None for a pure number."""
     if name == "time" or name == "dt" or name.startswith("dt_"):
         return "time"
     if "drift" in name or name.startswith("divergence"):
@@ -28,8 +28,8 @@ def of_column(name):
 
 
 class Units:
-    """Names of units for labels, and factors from the units of the run to them; the solver itself takes any consistent set.
-    Of µm, µs and pg the labels are µm/ms, Pa, mPa s, fJ and nW."""
+    """Names of units for labels, and factors from the units of the run to them; the solver itself accepts any consistent set of
+    units. For um, us and pg the labels are µm/ms, Pa, mPa s, fJ and nW."""
 
     def __init__(self, text):
         words = text.split(",") if text else ["", "", ""]
@@ -39,7 +39,7 @@ class Units:
         self.set_dimension(3)
 
     def set_dimension(self, d):
-        """3, or 2, where integrals are per depth."""
+        """Sets the dimension: 3, or 2, where integrals are per depth."""
         length, time, mass, power = self.length, self.time, self.mass, dict(zip(range(2, 6), "²³⁴⁵"))
         self.names, self.factors = {}, {}
         if not length:
@@ -63,7 +63,7 @@ class Units:
                                "force": f"ρ {length}{power[d + 1]}/{time}²"})
 
     def factor(self, quantity):
-        """What values of the run are multiplied by for labels of this quantity."""
+        """Returns the factor by which values of the run are multiplied for labels of this quantity."""
         return self.factors.get(quantity, 1)
 
     def label(self, words, quantity):
@@ -73,7 +73,7 @@ class Units:
         return " " + self.names[quantity] if quantity in self.names else ""
 
     def at(self, time):
-        """Words for a moment: four digits, and all of those before the point."""
+        """Returns the text for a time: four digits, or all digits before the decimal point if there are more."""
         return f"t = {time:.4g}{self.after('time')}" if abs(time) < 1e4 else f"t = {time:.0f}{self.after('time')}"
 
     @staticmethod
@@ -83,7 +83,7 @@ class Units:
 
 
 class Parser(argparse.ArgumentParser):
-    """Takes -30,20 for a value, not for an option."""
+    """Accepts -30,20 as a value instead of an option."""
 
     def __init__(self, *words, **keywords):
         super().__init__(*words, **keywords)

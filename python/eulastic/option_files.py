@@ -6,14 +6,15 @@ BLANKS = " \t\n\v\f\r"
 
 
 def is_name(word):
-    """-1, -.5, -inf and -nan are values."""
+    """Returns whether a word is the name of an option; -1, -.5, -inf and -nan are values."""
     start = word[1:].split(",")[0].lower()
     return word[:1] == "-" and len(word) > 1 and not (word[1].isdigit() or word[1] == ".") and \
         start not in ("inf", "infinity", "nan")
 
 
 def split_words(line):
-    """Words between blanks; quotes keep blanks and # in a word, # begins a comment. ValueError if a quote stays open."""
+    """Splits a line at blanks. Quotes keep blanks and # in a word; otherwise # begins a comment. ValueError if a quote stays
+    open."""
     words, inside, quoted = [], False, False
     for c in line:
         if not quoted and c in BLANKS:
@@ -34,7 +35,8 @@ def split_words(line):
 
 
 def pairs(words):
-    """[(name without dash, value)] of words that alternate; the value of a bare name is "". ValueError for a stray word."""
+    """Returns [(name without dash, value)] for words that alternate; the value of a name without one is "". ValueError for a
+    value without a name."""
     found, name = [], None
     for word in words:
         if is_name(word):
@@ -49,14 +51,14 @@ def pairs(words):
 
 
 def parse_options(words):
-    """Options as {name without dash: value}."""
+    """Returns options as {name without dash: value}."""
     return dict(pairs(words))
 
 
 def read_options(path, depth=0):
-    """{name without dash: value} of a file of options: lines `-name value`, # starts a comment, quotes keep blanks.
-    -options_file brings in another file, from the directory of this one; options of this file override those of the other.
-    ValueError names the file and the line of what the program would refuse."""
+    """Returns {name without dash: value} of a file of options: lines `-name value`, in which # begins a comment and quotes keep
+    blanks. -options_file includes another file, relative to the directory of this one; options of this file override those of the
+    other. ValueError names the file and the line that the program would refuse, too."""
     path, own, brought_in = pathlib.Path(path), {}, {}
     if depth > DEPTH_MAX:
         raise ValueError(f"-options_file: {path} brings in itself")

@@ -5,14 +5,14 @@ SIDE_ISSUES = "output_dir", "output_overwrite", "restart", "threads", "check_onl
 
 
 def differing_options(runs):
-    """For each run {option: value} of those options whose values are not the same in all of them."""
+    """Returns for each run {option: value} of those options whose values are not equal in all runs."""
     names = dict.fromkeys(name for run in runs for name in run.options if name not in SIDE_ISSUES)
     differ = [name for name in names if len({run.options.get(name) for run in runs}) > 1]
     return [{name: run.options[name] for name in differ if name in run.options} for run in runs]
 
 
 def labels_of(runs):
-    """For each run the options in which it differs from others, at most three, or else the name of its directory."""
+    """Returns for each run the options in which it differs from others, at most three, or the name of its directory."""
     return [", ".join(f"{name} {value}" for name, value in options.items()) if 0 < len(options) <= 3 else run.directory.name
             for run, options in zip(runs, differing_options(runs))]
 

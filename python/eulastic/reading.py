@@ -13,7 +13,7 @@ from .option_files import read_options
 VESSELS = "tube", "constricted_tube", "voxels"
 
 class Snapshot:
-    """One snapshot file. Fields are read when asked for: arrays (nz, ny, nx), or (nz, ny, nx, 3) of a vector."""
+    """One snapshot file. Fields are read on access, as arrays (nz, ny, nx), or (nz, ny, nx, 3) for a vector."""
 
     def __init__(self, path, run):
         self.path, self.run = path, run
@@ -29,7 +29,7 @@ class Snapshot:
             return file[name][...]
 
     def coordinates(self, name):
-        """(x, y, z) of a field, each an array along its direction: value [k, j, i] lies at (x[i], y[j], z[k])."""
+        """Returns (x, y, z) of a field, each an array along its direction: the value [k, j, i] lies at (x[i], y[j], z[k])."""
         with h5py.File(self.path) as file:
             where = file[name].attrs.get("location", "centre")
             nx, ny, nz = file[name].shape[2::-1]
@@ -39,21 +39,23 @@ class Snapshot:
                      for d, n, h in zip("xyz", (nx, ny, nz), self.run.spacing))
 
     def velocity(self):
-        """Velocity at cell centres, (3, nz, ny, nx); velocity_x, _y, _z are the staggered ones."""
+        """Returns the velocity at cell centres, (3, nz, ny, nx); velocity_x, _y, _z are the staggered components."""
         return numpy.moveaxis(self["velocity"].astype(float), -1, 0)
 
     def wall_shear_stress(self, d, side):
-        """Size of the shear stress on the low (0) or high (1) wall normal to d: (nz, ny, nx), one layer along d."""
+        """Returns the magnitude of the shear stress on the low (0) or high (1) wall normal to d: (nz, ny, nx), one layer along d."""
         return numpy.linalg.norm(self[f"wall_shear_stress_{'xyz'[d]}{('min', 'max')[side]}"].astype(float), axis=-1)
 
     def surface_shear_stress(self):
-        """Size of the shear stress on vessels and obstacles in the cells that their surface cuts, 0 in others."""
+        """Returns the magnitude of the shear stress on vessels and obstacles in the cells that their surface cuts, 0 in all
+        others."""
         return numpy.linalg.norm(self["wall_shear_stress"].astype(float), axis=-1)
 
     def plane(self, d=2, place=None):
-        """Index of the plane of cells normal to d (0, 1, 2) at `place`, ValueError outside of the box. By default the plane that
-        cuts the most solid of bodies that move; where there are none, the most of the lumen of the vessels; without any solid
-        the middle one. Of planes that differ by round-off only, the middle one, of two the first."""
+        """Returns the index of the plane of cells normal to d (0, 1, 2) at `place`; ValueError outside of the box. By default it
+        is the plane with the largest amount of moving bodies; without any, that with the largest lumen of the vessels; without
+        any solid, the middle one. Among planes that differ by round-off only, it is the one next to the middle, of two such
+        planes the first."""
         if place is not None:
             if not 0 <= place <= self.run.length[d]:
                 raise ValueError(f"{'xyz'[d]} = {place:g} is outside of the box; accepted: 0 to {self.run.length[d]:g}")
@@ -69,11 +71,12 @@ class Snapshot:
         return int(most[(len(most) - 1) // 2])
 
     def fraction_of(self, species):
-        """The solid fraction of one species, (nz, ny, nx)."""
+        """Returns the solid fraction of one species, (nz, ny, nx)."""
         return self["solid_fraction" + ("_" + species if len(self.run.species) > 1 else "")]
 
     def fraction_of_bodies(self):
-        """The solid fraction of all species that move with the flow, (nz, ny, nx): not of vessels, slabs and other walls."""
+        """Returns the solid fraction of all species that move with the flow, (nz, ny, nx), without vessels, slabs and other
+        walls."""
         moving = [name for name in self.run.species if not self.run.is_fixed(name)]
         if "solid_fraction" not in self or not moving and self.run.species:
             return numpy.zeros(self.run.cells[::-1], "f4")
@@ -82,7 +85,8 @@ class Snapshot:
         return sum(self.fraction_of(name) for name in moving)
 
     def bonds(self):
-        """Rows of adhesion_bonds.csv at the time of this snapshot, as `Run.adhesion_bonds`; none without adhesion."""
+        """Returns the rows of adhesion_bonds.csv at the time of this snapshot, as `Run.adhesion_bonds` has them; no rows without
+        adhesion."""
         rows = self.run.adhesion_bonds
         if rows is None or not len(rows):
             return rows
@@ -90,7 +94,7 @@ class Snapshot:
 
 
 def is_finished(directory):
-    """Whether a run came to its end: until then summary.json is of its last checkpoint, and says so."""
+    """Returns whether a run reached its end. Until then summary.json is that of its last checkpoint and says `unfinished`."""
     path = pathlib.Path(directory) / "summary.json"
     return path.exists() and json.loads(path.read_text())["exit_reason"] in ("time_end", "steps")
 
@@ -140,17 +144,17 @@ class Run:
 
     @property
     def species(self):
-        """{name: shape} in the order of -species."""
+        """Returns {name: shape} in the order of -species."""
         names = self.options.get("species", "")
         return {name: self.options.get(name + "_shape") for name in names.split(",")} if names else {}
 
     def is_fixed(self, species):
-        """Whether the species is a vessel or an obstacle (rigid, anchored or from a file, but no membrane), which the flow does not
-        carry along."""
+        """Returns whether the species is a vessel or an obstacle (rigid, anchored or from a file, but no membrane), which the
+        flow does not carry along."""
         shape, of = self.species[species], lambda name, default: self.options.get(f"{species}_{name}", default)
-        attached = of("attached", "true" if shape in ("slab", "tube", "constricted_tube") else "false")
+        anchored = of("anchored", "true" if shape in ("slab", "tube", "constricted_tube") else "false")
         law = of("law", "neo_hookean")
-        return law == "rigid" or law not in ("membrane", "red_cell") and (attached == "true" or shape == "voxels")
+        return law == "rigid" or law not in ("membrane", "red_cell") and (anchored == "true" or shape == "voxels")
 
     @property
     def cells(self):
@@ -166,7 +170,8 @@ class Run:
         return self.length / self.cells
 
     def side(self, d, high):
-        """Kind of the low (0) or high (1) boundary in direction d: periodic, wall, symmetry, inflow, pressure or outflow."""
+        """Returns the kind of the low (0) or high (1) boundary in direction d: periodic, wall, symmetry, inflow, pressure or
+        outflow."""
         name = "boundary_" + "xyz"[d]
         both, own, other = (self.options.get(name + end, "same") for end in ("", *("min", "max")[::1 - 2 * high]))
         both = "periodic" if both == "same" else both
@@ -178,7 +183,7 @@ class Run:
         return self.side(d, 0) != "periodic"
 
     def centres(self, d):
-        """Coordinates of the cell centres along direction d."""
+        """Returns the coordinates of the cell centres along direction d."""
         return (numpy.arange(self.cells[d]) + 0.5) * self.spacing[d]
 
 
@@ -230,8 +235,8 @@ def read_bodies(path):
 
 
 def over_time(rows):
-    """Rows of profiles or probes as arrays over time: time (nt); positions (n), which are constant; every other column (nt, n).
-    A last time with missing rows is left out."""
+    """Returns the rows of profiles or probes as arrays over time: time (nt); positions (n), which are constant; every other
+    column (nt, n). A last time with missing rows is left out."""
     names = [name for name in rows.dtype.names if name != "time"]
     count = int((rows.time == rows.time[0]).sum()) if len(rows) else 0
     whole = rows[:len(rows) // count * count] if count else rows

@@ -1,4 +1,4 @@
-"""numpy and h5py, which the package needs: found where Debian keeps them, or an error that says how to install them."""
+"""Finds numpy and h5py, which the package needs, also among the packages of Debian; otherwise an error says how to install them."""
 import importlib
 import os
 import sys
@@ -7,7 +7,7 @@ DEBIAN = "/usr/lib/python3/dist-packages"  # its packages serve any Python of th
 
 
 def not_importable(names):
-    """The names that cannot be imported. Modules of a failed import are removed, so that another copy can be tried."""
+    """Returns the names that cannot be imported. Modules of a failed import are removed, so that another copy can be tried."""
     failed = []
     for name in names:
         before = set(sys.modules)
@@ -21,14 +21,14 @@ def not_importable(names):
 
 
 def how_to_install(names):
-    """One sentence for the Python that runs: conda or pip."""
+    """Returns one sentence for the running Python, for conda or pip."""
     if os.path.isdir(os.path.join(sys.prefix, "conda-meta")):
         return f"conda install -p {sys.prefix} {' '.join(names)}"
     return f"{sys.executable} -m pip install {' '.join(names)}"
 
 
 def find(names=("numpy", "h5py"), debian=DEBIAN):
-    """Makes the packages importable, those of the running Python first. Raises ImportError with the command that installs
+    """Makes the packages importable; those of the running Python come first. Raises ImportError with the command that installs
     what is missing."""
     failed = not_importable(names)
     if failed and os.path.isdir(debian) and debian not in sys.path:

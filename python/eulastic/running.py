@@ -19,7 +19,7 @@ SCALARS = int, float, str, bool, type(None)
 
 
 class RunError(RuntimeError):
-    """A run that did not reach its end, with the program's message. exit_code is that of the program (docs/reliability.md),
+    """A run did not reach its end. The text is the program's message; exit_code is that of the program (docs/reliability.md),
     directory that of the run; table contains the successful rows of a sweep."""
 
     def __init__(self, text, exit_code=None, directory=None, table=None):
@@ -67,7 +67,7 @@ def stop(process):
 
 
 def launch(case, directory, ranks, options, say, replace=False, started=lambda process: None):
-    """Runs to the end and returns the Run; options are strings, and `say` is called with each line."""
+    """Runs the program to its end and returns the Run. Options are strings, and `say` is called with each line of output."""
     words = [word for name, text in options.items() for word in (f"-{name}", text)]
     command = ["bash", SCRIPT, "--ranks", str(ranks), *(["--replace"] if replace else []), case, directory, *words]
     # A session of its own: an interrupt is for Python, which then stops the program with all that belongs to it.
@@ -156,7 +156,7 @@ def sweep(case, grid, jobs=1, output_dir=None, ranks=1, progress=True, replace=F
 
 
 def plain(value, text):
-    """The value itself where a column of a table can hold it, else its text."""
+    """Returns the value if a column of a table can hold it, otherwise its text."""
     value = value.item() if isinstance(value, numpy.generic) else value
     return value if isinstance(value, SCALARS) else text
 
@@ -168,7 +168,7 @@ def outcome(result):
 
 
 def table_of(swept, rows):
-    """Columns of one type each: numbers (null is nan), words, and objects for the runs."""
+    """Returns a record array whose columns have one type each: numbers (null becomes nan), strings, or objects for the runs."""
     columns = {name: [point[name] for point, _ in rows] for name in swept}
     for name in rows[0][1].summary:
         values = [result.summary.get(name) for _, result in rows]

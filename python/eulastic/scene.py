@@ -1,4 +1,4 @@
-"""Pictures of 3-D runs by VTK, for scripts/render and the studies: one window, one snapshot after the other."""
+"""Pictures of 3-D runs by VTK, for scripts/render and the studies: one window that shows one snapshot after the other."""
 import colorsys
 import dataclasses
 import os
@@ -31,14 +31,14 @@ class Look:
 
 
 def start_display():
-    """Starts this script again under a virtual display when there is none: Debian's VTK cannot do without."""
+    """Restarts this script under a virtual display if there is no display, which Debian's VTK requires."""
     if not os.environ.get("DISPLAY"):
         first = f"--server-num={100 + os.getpid() % 400}"  # scripts that start together must not race for one number
         os.execvp("xvfb-run", ["xvfb-run", "-a", first, "-s", "-screen 0 640x480x24", sys.executable, "-B", *sys.argv])
 
 
 def colour(body, hue=None):
-    """Neighbouring labels get far hues, or far shades of one (golden ratio)."""
+    """Returns the colour of a label. Neighbouring labels get distant hues, or distant shades of one hue (golden ratio)."""
     turn = 0.618034 * body % 1
     if hue is None:
         return colorsys.hsv_to_rgb((0.02 + turn) % 1, 0.55, 0.92)
@@ -46,7 +46,7 @@ def colour(body, hue=None):
 
 
 def species(run):
-    """{name: hue} of each: None if it is the only one, "vessel" of vessels."""
+    """Returns {name: hue}; the hue is None for the only species, and "vessel" for vessels."""
     shape = run.species
     hues = iter(HUES * len(shape))
     return {name: "vessel" if kind in VESSELS else None if len(shape) == 1 else RED if kind == "biconcave" else next(hues)
@@ -54,15 +54,15 @@ def species(run):
 
 
 def on_plane(snapshot, name):
-    """In the plane z = 0; at a wall, or inside of one, there is nothing to see, so the middle one."""
+    """Returns a field on the plane z = 0. If this plane is a wall, or lies inside one, the middle plane is taken."""
     speed = derived.field(snapshot, "speed")
     still = snapshot.run.is_bounded(2) or speed[0].max() < 1e-3 * speed.max()
     return derived.field(snapshot, name)[snapshot.run.cells[2] // 2 if still else 0]
 
 
 def plane_range(snapshots, name="velocity_x"):
-    """One for all frames of a movie, 0 in the middle where it has both signs, else included, so that the quarters are short
-    numbers."""
+    """Returns the range of a field on the plane, the same for all frames of a film: with 0 in the middle if it has both signs,
+    otherwise with 0 at one end, and with ends whose quarters are short numbers."""
     low, high = 0.0, 0.0
     for snapshot in snapshots:
         values = on_plane(snapshot, name)
@@ -78,21 +78,22 @@ def plane_range(snapshots, name="velocity_x"):
 
 
 def stress_range(snapshots):
-    """Largest shear stress on walls and surfaces in all frames, rounded up to two digits; 0 without any."""
+    """Returns the largest shear stress on walls and surfaces in all frames, rounded up to two digits; 0 if there is none."""
     walls = [name for name in snapshots[-1].fields if name.startswith("wall_shear_stress")]
     largest = max((numpy.linalg.norm(snapshot[name], axis=-1).max() for snapshot in snapshots for name in walls), default=0)
     return round_up(largest)
 
 
 def field_range(snapshots, name):
-    """Of a field in bodies, in all frames."""
+    """Returns the range of a field in bodies over all frames."""
     inside = [derived.field(s, name)[s["solid_fraction"] > 0.5] for s in snapshots]
     values = numpy.concatenate([v for v in inside if v.size] or [numpy.zeros(1)])
     return derived.limits(name, values, derived.least(snapshots[-1], name))
 
 
 def tension_range(snapshots):
-    """Of the bonds in all frames, 0 in the middle, its quarters short numbers; None without any bond."""
+    """Returns the range of the tension of bonds over all frames, with 0 in the middle and quarters that are short numbers; None
+    without bonds."""
     tensions = [rows.tension for rows in (snapshot.bonds() for snapshot in snapshots) if rows is not None and len(rows)]
     if not tensions:
         return None
@@ -174,7 +175,7 @@ class Scene(Framed):
         actor.GetMapper().SetLookupTable(self.table(*self.body_range))
 
     def add_vessel(self, renderer, snapshot, name):
-        """The far side of the lumen, coloured by the shear stress on it; ends of it that leave the box are open."""
+        """Adds the far side of the lumen, coloured by its shear stress; ends that leave the box are open."""
         surface = self.with_normals(self.contours.vessel(snapshot, name))
         look = dict(BackfaceCulling=True)
         if "wall_shear_stress" not in snapshot:
@@ -188,7 +189,8 @@ class Scene(Framed):
         mapper.SetLookupTable(self.table(0, self.stress, GREENS))
 
     def add_bonds(self, renderer, snapshot):
-        """Lines from end to end, coloured by their tension. One that begins outside of the box is moved by its periods."""
+        """Adds bonds as lines from end to end, coloured by their tension. A bond that begins outside of the box is moved by its
+        periods."""
         from vtkmodules.util.numpy_support import numpy_to_vtk
         vtk, bonds = self.vtk, snapshot.bonds()
         periodic = [not self.run.is_bounded(d) for d in range(3)]
@@ -235,7 +237,7 @@ class Scene(Framed):
         return table
 
     def add_wall(self, renderer, snapshot, d, side):
-        """A wall, coloured by the size of the shear stress on it where the snapshot has that."""
+        """Adds a wall, coloured by the magnitude of its shear stress if the snapshot has it."""
         from vtkmodules.util.numpy_support import numpy_to_vtk
         points = [n + 1 for n in self.run.cells]
         points[d] = 1
@@ -257,14 +259,14 @@ class Scene(Framed):
         renderer.AddActor(actor)
 
     def add_slice(self, renderer, snapshot):
-        """A field on the plane z = 0, behind the bodies."""
+        """Adds a field on the plane z = 0, behind the bodies."""
         from vtkmodules.util.numpy_support import numpy_to_vtk
         run, vtk = self.run, self.vtk
         values = numpy.pad(on_plane(snapshot, self.look.behind), 1, mode="edge")
         for end in (0, -1):
             wall = run.side(1, -end) == "wall" and self.look.behind.startswith("velocity_")
             if wall:
-                moves = run.options.get(f"wall_y{('min', 'max')[-end]}_velocity", "0,0,0").split(",")
+                moves = run.options.get(f"boundary_y{('min', 'max')[-end]}_velocity", "0,0,0").split(",")
                 values[end] = float(moves["xyz".index(self.look.behind[-1])])
         grid = vtk.vtkRectilinearGrid()
         grid.SetDimensions(*values.shape[::-1], 1)

@@ -1,10 +1,9 @@
-"""Bodies in a snapshot as pieces of its grid, and fields that only cells at a surface hold. Arrays are
-(nz, ny, nx)."""
+"""Bodies in a snapshot as pieces of its grid, and fields that are stored only in cells at a surface. Arrays are (nz, ny, nx)."""
 import numpy
 
 
 def dilate(label):
-    """Labels with one more layer of cells around each body, so that the surface phi = 1/2 has a name everywhere."""
+    """Returns the labels with one more layer of cells around each body, so that every point of the surface phi = 1/2 has a label."""
     for axis in range(3):
         for shift in (1, -1):
             label = numpy.where(label == 0, numpy.roll(label, shift, axis), label)
@@ -12,7 +11,8 @@ def dilate(label):
 
 
 def span(used, periodic):
-    """First cell and number of cells of a body along one direction; across a periodic side it may start below 0."""
+    """Returns the first cell and the number of cells of a body along one direction; across a periodic boundary the first may be
+    negative."""
     n, occupied = len(used), numpy.flatnonzero(used)
     if not periodic:
         return occupied[0], occupied[-1] - occupied[0] + 1
@@ -23,7 +23,7 @@ def span(used, periodic):
 
 
 def body_pieces(fraction, label, periodic):
-    """For every label: (label, its phi in a box just around it, index (k,j,i) where that box begins)."""
+    """Yields for every label (label, its phi in a box around the body, index (k, j, i) of the first cell of that box)."""
     dilated = dilate(dilate(label))
     for body in numpy.unique(label[label > 0]):
         mine = (label == body) & (fraction > 0.01)  # remains that trail behind have no say in where it is
@@ -42,7 +42,8 @@ def body_pieces(fraction, label, periodic):
 
 
 def enclosing(phi):
-    """The phi, 1/2 at most, whose surface encloses as much as the body fills; phi is linear between centres of cells."""
+    """Returns the level of phi, at most 1/2, whose surface encloses the volume of the body; phi is taken as linear between cell
+    centres."""
     fine, volume = phi, phi.sum()
     for axis in range(3):
         low, high = (numpy.take(fine, range(first, first + fine.shape[axis] - 1), axis) for first in (0, 1))
@@ -53,7 +54,8 @@ def enclosing(phi):
 
 
 def spread(values):
-    """Values that only some cells hold, others 0: the weighted mean of those that do among the 27 cells around."""
+    """Extends values that only some cells have, 0 in all others: each cell takes the weighted mean of those among the 27 cells
+    around it."""
     def smooth(q):
         for axis in range(3):
             q = numpy.pad(q, [(1, 1) if d == axis else (0, 0) for d in range(3)])
@@ -66,8 +68,8 @@ def spread(values):
 
 
 def sample(values, places, periodic):
-    """Interpolated linearly to places (n, 3), x before y before z, in cells from the centre of the first one; across periodic
-    sides (of z, y, x) values go on, beyond others they are those of the last cell."""
+    """Returns values interpolated linearly to positions (n, 3), x before y before z, in cells from the centre of the first cell.
+    Across periodic boundaries (of z, y, x) the field repeats; beyond others it has the value of the last cell."""
     low = numpy.floor(places).astype(int)
     part, total = places - low, numpy.zeros(len(places))
     for corner in numpy.ndindex(2, 2, 2):
@@ -78,8 +80,8 @@ def sample(values, places, periodic):
 
 
 def at_points(values, places):
-    """Interpolated linearly to places (n, 3), x before y before z, in cells from the centre of the first one; cells that hold
-    nothing, 0, do not count."""
+    """Returns values interpolated linearly to positions (n, 3), x before y before z, in cells from the centre of the first cell;
+    cells without a value, 0, do not count."""
     low = numpy.clip(numpy.floor(places).astype(int), 0, numpy.array(values.shape[::-1]) - 2)
     part = numpy.clip(places - low, 0, 1)
     total, weights = numpy.zeros(len(places)), numpy.zeros(len(places))

@@ -1,4 +1,4 @@
-"""Scripts, which have no suffix, as modules."""
+"""Loads scripts, which have no suffix, as modules."""
 import importlib.machinery
 import importlib.util
 import pathlib

@@ -1,4 +1,4 @@
-"""Pages of evidence say once with which program, when and on what machine they were made, and by which script."""
+"""Writes the line of a page of evidence that names the program, the date, the machine and the script with which it was made."""
 import datetime
 import hashlib
 import os

@@ -15,16 +15,15 @@ import subprocess
 import sys
 import tempfile
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 from communication_counts import Counts, library, program
 from performance_runs import ENVIRONMENT, ROOT, on_ranks
 from scaling_model import ASSUMPTIONS, CASE, Machine, Split, Step, model
 
+sys.path.insert(0, str(ROOT / "scripts"))
+from eulastic.figure_style import BLUE, VERMILLION, legend_below, panels, save  # noqa: E402
+
 METHODS = "fast", "classic"
-MEASURED = {"fast": "C0", "classic": "C3"}
+MEASURED = {"fast": (BLUE, "o-"), "classic": (VERMILLION, "s-")}
 MODELLED = [("0.5", (0, (6, 2))), ("0.5", (0, (2, 2))), ("0.7", (0, (6, 2))), ("0.7", (0, (2, 2)))]  # grey, dashed
 PITCH = 10.56, 5.28, 10.56  # of the bodies in CASE
 SPACING = 21.12 / 64        # of the cells there
@@ -125,12 +124,11 @@ def describe(machine, method, rows):
 
 def draw(figure, measured, models, path):
     """Measured: full lines and marks in colours. Modelled: grey, dashed, without marks, and said so."""
-    picture, axes = plt.subplots(figsize=(6.4, 4.4))
-    for method in METHODS:
+    picture, (axes,) = panels(1, height=4.6)
+    for method, (colour, mark) in MEASURED.items():
         times = {row["ranks"]: row["seconds_per_step"] for row in measured if row["method"] == method}
         if times:
-            axes.plot(list(times), [figure.quantity(times, p) for p in times], "o-", color=MEASURED[method],
-                      label=f"measured: {method}")
+            axes.plot(list(times), [figure.quantity(times, p) for p in times], mark, color=colour, label=f"measured: {method}")
     for n, (machine, method, rows) in enumerate(models):
         colour, dashes = MODELLED[n % len(MODELLED)]
         times = {split.count: sum(parts.values()) for split, parts in rows}
@@ -142,10 +140,8 @@ def draw(figure, measured, models, path):
         axes.set(yscale="log")
     else:
         axes.set(ylim=(0, 1.1))
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
-    picture.tight_layout()
-    picture.savefig(path, dpi=90, metadata={"Description": "dashed grey lines are modelled, not measured"})
+    legend_below(picture, [axes], columns=2)
+    save(picture, pathlib.Path(path), metadata={"Description": "dashed grey lines are modelled, not measured"})
 
 
 def job_script(figure, arguments):

@@ -31,21 +31,21 @@ LEVEL_MESSAGES = 3     # to a neighbour in a sweep, of each coarse level that is
 SPACING = 21.12 / 96   # of CASE as counted
 BOXES = "boxes"        # the verb of what a step sends because bodies lie in boxes of their own
 # What stands on the command line of scripts/count_communication beside CASE, for the counts and for -check_only.
-SETTINGS = {"fast": ["-method", "fast", "-time_step", "0.8", "-acm_tolerance", "1e-30", "-acm_sweeps_max", "2"],
+SETTINGS = {"fast": ["-method", "fast", "-time_step", "0.8", "-acm_tolerance", "1e-30", "-acm_iterations_max", "2"],
             "classic": ["-method", "classic", "-time_step", "0.004"]}
 ASSUMPTIONS = [
-    "a rank's messages leave one after the other, nothing overlaps, no other traffic, no contention in the network",
-    "an exchange of a block of fields is a message to each neighbour and waits for one latency, and so is one with the boxes of "
-    "bodies, though fewer ranks share a body",
-    "a body is owned by the rank that has its centre, which may be anywhere, and what lies in the cells of other ranks travels; that "
-    "bodies go to other ranks to even out the work is left out",
-    "packing and unpacking read and write every value once at both ends, at the bandwidth of memory",
-    "a reduction takes log2(ranks) rounds of the whole vector; a gather log2(ranks) latencies and all of its bytes",
-    "levels of the V-cycle beyond those counted send three messages to a neighbour in a sweep, as the counted do; their "
-    "bytes are left out",
-    "all ranks compute as long as the largest box takes; bodies are spread evenly, output and snapshots left out",
-    "fast: two sweeps and about twenty viscous stages in a step, as counted; its arithmetic over that of classic is as "
-    "-check_only estimates",
+    "the messages of a rank leave one after the other; nothing overlaps, and the network has no other traffic and no contention",
+    "an exchange of a block of fields is one message to each neighbour and waits for one latency; the same is assumed for exchanges "
+    "with the boxes of bodies, although fewer ranks share a body",
+    "a body is owned by the rank that has its centre, which may be anywhere, and the data in cells of other ranks are sent; the "
+    "redistribution of bodies for load balance is neglected",
+    "packing and unpacking read and write every value once at both ends, at the bandwidth of the memory",
+    "a reduction takes log2(ranks) rounds with the whole vector; a gather takes log2(ranks) latencies and the time of all its bytes",
+    "levels of the V-cycle beyond the counted ones send three messages to a neighbour per pressure iteration, as the counted ones do; "
+    "their bytes are neglected",
+    "all ranks compute as long as the rank with the largest box; bodies are distributed evenly, and output is neglected",
+    "fast has two pressure iterations and about twenty viscous stages in a step, as counted; the ratio of its arithmetic to that of "
+    "classic is the estimate of -check_only",
 ]
 
 

@@ -1,4 +1,4 @@
-// Records go to the ranks that they are for, or to all.
+// Sends records to the ranks that need them, without knowing who receives from whom, or to all ranks.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -8,25 +8,25 @@
 
 namespace eulastic {
 
-/// Collective: record n goes to ranks[n]; then `records` are those that have come here, by the rank that sent them.
-/// Messages between these ranks only.
+/// Sends record n to ranks[n], and replaces `records` by those that arrived, ordered by the sending rank. Collective;
+/// messages pass between the ranks concerned only.
 template <class T>
 PetscErrorCode deliver(MPI_Comm comm, const std::vector<int> &ranks, std::vector<T> *records) {
   SfHandle sf;
   const PetscInt *arriving;
-  std::vector<PetscSFNode> to;
-  MpiType one;
+  std::vector<PetscSFNode> targets;
+  MpiType record_type;
   PetscFunctionBeginUser;
-  for (const int rank : ranks) to.push_back({rank, 0});
+  for (const int rank : ranks) targets.push_back({rank, 0});
   PetscCall(PetscSFCreate(comm, sf.put()));
-  PetscCall(PetscSFSetGraph(sf.get(), 1, static_cast<PetscInt>(to.size()), nullptr, PETSC_OWN_POINTER, to.data(),
-                            PETSC_COPY_VALUES));
+  PetscCall(PetscSFSetGraph(sf.get(), 1, static_cast<PetscInt>(targets.size()), nullptr, PETSC_OWN_POINTER,
+                            targets.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFComputeDegreeBegin(sf.get(), &arriving));
   PetscCall(PetscSFComputeDegreeEnd(sf.get(), &arriving));
   std::vector<T> arrived(static_cast<std::size_t>(arriving[0]));
-  PetscCall(one.create(sizeof(T), MPI_BYTE));
-  PetscCall(PetscSFGatherBegin(sf.get(), one.get(), records->data(), arrived.data()));
-  PetscCall(PetscSFGatherEnd(sf.get(), one.get(), records->data(), arrived.data()));
+  PetscCall(record_type.create(sizeof(T), MPI_BYTE));
+  PetscCall(PetscSFGatherBegin(sf.get(), record_type.get(), records->data(), arrived.data()));
+  PetscCall(PetscSFGatherEnd(sf.get(), record_type.get(), records->data(), arrived.data()));
   records->swap(arrived);
   PetscFunctionReturn(0);
 }

@@ -7,16 +7,16 @@
 namespace eulastic {
 namespace {
 
-constexpr int verb_count = static_cast<int>(Verb::count);
+constexpr int event_count = static_cast<int>(Verb::count);
 constexpr int stage_count = static_cast<int>(Stage::count);
-constexpr std::array<const char *, verb_count> verb_names = {
+constexpr std::array<const char *, event_count> event_names = {
     "EulExchange",   "EulWait",     "EulWallGhosts", "EulMomentum", "EulViscous", "EulTension", "EulMembrane",
     "EulAdhesion",   "EulRigid",    "EulDivergence", "EulACM",      "EulSMAC",    "EulCorrect", "EulFraction",
     "EulLeftCauchy", "EulExterior", "EulBodies",     "EulBoxes",    "EulThreads", "EulSums",    "EulWrite"};
 constexpr std::array<const char *, stage_count> stage_names = {"Setup", "Step", "Output"};
 constexpr std::array<const char *, stage_count> stage_events = {"EulSetup", "EulStep", "EulOutput"};
 
-PetscLogEvent verb_ids[verb_count], stage_event_ids[stage_count];
+PetscLogEvent event_ids[event_count], stage_event_ids[stage_count];
 PetscLogStage stage_ids[stage_count];
 bool registered = false;
 
@@ -27,7 +27,7 @@ PetscErrorCode register_events() {
   if (registered) PetscFunctionReturn(0);
   PetscClassId class_id;
   PetscCall(PetscClassIdRegister("Eulastic", &class_id));
-  for (int e = 0; e < verb_count; ++e) PetscCall(PetscLogEventRegister(verb_names[e], class_id, &verb_ids[e]));
+  for (int e = 0; e < event_count; ++e) PetscCall(PetscLogEventRegister(event_names[e], class_id, &event_ids[e]));
   for (int s = 0; s < stage_count; ++s) {
     PetscCall(PetscLogStageRegister(stage_names[s], &stage_ids[s]));
     PetscCall(PetscLogEventRegister(stage_events[s], class_id, &stage_event_ids[s]));
@@ -36,9 +36,9 @@ PetscErrorCode register_events() {
   PetscFunctionReturn(0);
 }
 
-// What a member of a team does is part of the verb that the team works for.
-VerbScope::VerbScope(Verb verb) : verb_(verb) {
-  if (registered && !TeamMember::is_here()) (void)PetscLogEventBegin(verb_ids[static_cast<int>(verb)], 0, 0, 0, 0);
+// A member of a team logs no events: the calling thread adds its flops to the event around the parallel region.
+VerbScope::VerbScope(Verb event) : event_(event) {
+  if (registered && !TeamMember::is_here()) (void)PetscLogEventBegin(event_ids[static_cast<int>(event)], 0, 0, 0, 0);
 }
 
 VerbScope::~VerbScope() {
@@ -48,7 +48,7 @@ VerbScope::~VerbScope() {
   }
   if (!registered) return;
   (void)PetscLogFlops(flops_);
-  (void)PetscLogEventEnd(verb_ids[static_cast<int>(verb_)], 0, 0, 0, 0);
+  (void)PetscLogEventEnd(event_ids[static_cast<int>(event_)], 0, 0, 0, 0);
 }
 
 StageScope::StageScope(Stage stage) : stage_(stage) {

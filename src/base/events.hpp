@@ -1,10 +1,11 @@
-// The verbs and stages that -log_view shows, as scopes that end themselves.
+// Events and stages of -log_view, as scopes that begin with their construction and end with their destruction.
 #pragma once
 
 #include "base/petsc.hpp"
 
 namespace eulastic {
 
+/// The routines that -log_view shows as events.
 enum class Verb {
   exchange,
   wait,
@@ -30,26 +31,28 @@ enum class Verb {
   count
 };
 
+/// The stages of -log_view.
 enum class Stage { setup, step, output, count };
 
 /// Registers all events and stages; call once after PetscInitialize.
 PetscErrorCode register_events();
 
-/// Logs one verb from construction to destruction; `flops` may be added at any time in between.
+/// Logs one event from construction to destruction. `flops` may be added at any time in between.
 class VerbScope {
 public:
-  explicit VerbScope(Verb verb);
+  explicit VerbScope(Verb event);
   ~VerbScope();
   VerbScope(const VerbScope &) = delete;
   VerbScope &operator=(const VerbScope &) = delete;
   void flops(double count) noexcept { flops_ += count; }
 
 private:
-  Verb verb_;
+  Verb event_;
   double flops_ = 0;
 };
 
-/// A stage of the flat table and, because nested ones (-log_view :FILE:ascii_xml) know none, an event around it.
+/// A stage of -log_view, with an event of its own around it: the nested table (-log_view :FILE:ascii_xml) has no
+/// stages.
 class StageScope {
 public:
   explicit StageScope(Stage stage);

@@ -36,25 +36,25 @@ void Superaccumulator::add(double value) noexcept {
   limb[2] += sign * static_cast<std::int64_t>(static_cast<std::uint64_t>(shifted >> 64));
 }
 
-// Error-free transformations: below 2^E a value is h_1 + h_2 + h_3, multiples of 2^(E-47), 2^(E-94) and 2^(E-141), of
-// which 64 add up exactly. (x + m) - m, m = 1.5 2^(E+5), rounds to a multiple of 2^(E-47).
+// Adds with error-free transformations: a value below 2^E is split into h1 + h2 + h3, multiples of 2^(E-47), 2^(E-94)
+// and 2^(E-141), of which 64 add up exactly. (x + m) - m with m = 1.5 2^(E+5) rounds x to a multiple of 2^(E-47).
 void Superaccumulator::add(const double *values, int n) noexcept {
   constexpr int digits = 47, in_range[2] = {200, 1900};
-  std::uint64_t all = 0;
-  for (int i = 0; i < n; ++i) all = std::max(all, bits_of(values[i]) << 1);
-  const int biased = static_cast<int>(all >> 53);
+  std::uint64_t largest = 0;
+  for (int i = 0; i < n; ++i) largest = std::max(largest, bits_of(values[i]) << 1);
+  const int biased = static_cast<int>(largest >> 53);
   const auto rounder = [&](int level) {
     const std::uint64_t bits = static_cast<std::uint64_t>(biased + 6 - level * digits) << 52 | 1ull << 51;
     double value;
     std::memcpy(&value, &bits, sizeof value);
     return value;
   };
-  if (all == 0) return;
-  bool rest = biased < in_range[0] || biased > in_range[1];  // infinities and NaN too
+  if (largest == 0) return;
+  bool inexact = biased < in_range[0] || biased > in_range[1];  // also true for infinities and NaN
   double high = 0, middle = 0, low = 0;
-  if (!rest) {
+  if (!inexact) {
     const double m1 = rounder(0), m2 = rounder(1), m3 = rounder(2);
-#pragma omp simd reduction(+ : high, middle, low) reduction(| : rest)
+#pragma omp simd reduction(+ : high, middle, low) reduction(| : inexact)
     for (int i = 0; i < n; ++i) {
       const double h1 = (values[i] + m1) - m1, r1 = values[i] - h1;
       const double h2 = (r1 + m2) - m2, r2 = r1 - h2;
@@ -62,10 +62,10 @@ void Superaccumulator::add(const double *values, int n) noexcept {
       high += h1;
       middle += h2;
       low += h3;
-      rest |= r2 != h3;
+      inexact |= r2 != h3;
     }
   }
-  if (rest) {
+  if (inexact) {
     for (int i = 0; i < n; ++i) add(values[i]);
   } else {
     for (const double sum : {high, middle, low}) add(sum);
@@ -84,7 +84,7 @@ double Superaccumulator::value() const noexcept {
     for (int l = 0; l < limbs; ++l) {
       const std::int64_t t = sign * word_[l] + c;
       digit[l] = t & static_cast<std::int64_t>(limb_mask);
-      c = t >> 32;  // floor
+      c = t >> 32;  // the shift rounds towards minus infinity
     }
     digit[limbs] = c;
     return c;
@@ -97,7 +97,7 @@ double Superaccumulator::value() const noexcept {
   for (int l = top; l > top - 3; --l) leading = leading << 32 | static_cast<unsigned __int128>(l >= 0 ? digit[l] : 0);
   for (int l = top - 3; l >= 0; --l)
     if (digit[l]) {
-      leading |= 1;  // sticky: the conversion then rounds correctly
+      leading |= 1;  // a sticky bit, so that the conversion rounds correctly
       break;
     }
   return sign * std::ldexp(static_cast<double>(leading), 32 * (top - 2) - 1074);
@@ -116,12 +116,12 @@ double lane_sum(const double *values, int n, std::int64_t first) noexcept {
 
 void ExactSums::clear() noexcept {
   std::fill(sums_.begin(), sums_.end(), Superaccumulator{});
-  for (Waiting &w : waiting_) w.count = 0;
+  for (Buffer &w : buffers_) w.count = 0;
 }
 
 void ExactSums::flush(int s) noexcept {
-  sums_[s].add(waiting_[s].value, waiting_[s].count);
-  waiting_[s].count = 0;
+  sums_[s].add(buffers_[s].value, buffers_[s].count);
+  buffers_[s].count = 0;
 }
 
 void ExactSums::add_row(int s, const double *values, int n, std::int64_t first) noexcept {

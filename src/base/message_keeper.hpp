@@ -1,4 +1,4 @@
-// Keeps the first message of PETSc's error handling for our one line, and prints no traceback.
+// Keeps the first message of PETSc's error handling for the error message of the program, and suppresses tracebacks.
 #pragma once
 
 #include <petscsys.h>
@@ -7,6 +7,7 @@
 
 namespace eulastic {
 
+/// Handles PETSc's errors during its lifetime.
 class MessageKeeper {
 public:
   MessageKeeper() { (void)PetscPushErrorHandler(keep, &text_); }
@@ -14,7 +15,7 @@ public:
   MessageKeeper(const MessageKeeper &) = delete;
   MessageKeeper &operator=(const MessageKeeper &) = delete;
 
-  /// The first message since construction; empty if there was none.
+  /// Returns the first message since construction, empty if there was none.
   const std::string &text() const { return text_; }
 
 private:

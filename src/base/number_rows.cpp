@@ -41,7 +41,7 @@ std::string quoted(std::string_view item) {
   return '"' + text + (item.size() > longest ? "...\"" : "\"");
 }
 
-// Whether an item may be the name of a column.
+// Whether an item of the first line may be the name of a column.
 bool is_name(std::string_view item) {
   double number;
   return !item.empty() && static_cast<unsigned char>(item[0]) > ' ' &&
@@ -54,7 +54,7 @@ std::string name_of(std::string_view item) {
   return lower_case(std::string(trim(item)));
 }
 
-// Whether a comment begins with the word `name`.
+// Whether a comment begins with the word `name`, regardless of case.
 bool begins_with(std::string_view comment, const std::string &name) {
   return lower_case(std::string(comment.substr(0, name.size()))) == name &&
          (comment.size() == name.size() || !std::isalpha(static_cast<unsigned char>(comment[name.size()])));
@@ -64,7 +64,7 @@ class RowReader {
 public:
   RowReader(const RowFormat &format, const VisitRow &visit) : format_(format), visit_(visit) {}
 
-  /// What is wrong with a line without its comment.
+  /// Reads a line without its comment. Returns the error, or an empty string.
   std::string read_line(std::string_view line, long number) {
     const Items items = split(line);
     if (rows_ == 0 && std::all_of(items.begin(), items.end(), is_name)) return check_header(items);
@@ -77,7 +77,7 @@ public:
       row_.push_back(value);
     }
     if (format_.counted && rows_ == 0 && count_line_ == 0 && row_.size() == 1) {
-      if (!(row_[0] >= 0 && row_[0] == std::floor(row_[0]))) return quoted(items[0]) + " is no number of rows";
+      if (!(row_[0] >= 0 && row_[0] == std::floor(row_[0]))) return quoted(items[0]) + " is not a number of rows";
       count_line_ = number;
       count_ = row_[0];
       return {};
@@ -89,20 +89,22 @@ public:
     return visit_(row_);
   }
 
-  /// What is wrong with a line that is a comment; sets the number that it names.
+  /// Reads a comment line and sets *named if it is the one that the format names. Returns the error, or an empty
+  /// string.
   std::string read_comment(std::string_view comment, double *named) {
     if (format_.named.empty() || !begins_with(comment, format_.named)) return {};
     double value;
     if (named_ || !read_number(trim(comment.substr(format_.named.size())), &value) || !(value > 0) ||
         !std::isfinite(value))
-      return quoted(comment) + (named_ ? " comes a second time" : " names no number > 0") + "; accepted: one line # " +
+      return quoted(comment) + (named_ ? " is repeated" : " gives no number > 0") + "; accepted: one line # " +
              format_.named + " T with a number T > 0, or other comments";
     *named = value;
     named_ = true;
     return {};
   }
 
-  /// What is wrong with all lines; sets the line that says so, 0 if none does.
+  /// Checks the whole text after its last line. Returns the error, or an empty string, and sets *line to the line of
+  /// the error, 0 if the error concerns no single line.
   std::string end(long *line) const {
     *line = 0;
     if (rows_ == 0) return "holds no numbers";

@@ -7,7 +7,8 @@
 namespace eulastic {
 namespace {
 
-// Bytes of the UTF-8 character that begins at `at`; 0 if none does, or if it is a control character.
+// Returns the length in bytes of the UTF-8 character that begins at `at`; 0 if none begins there or if it is a control
+// character.
 std::size_t character_bytes(const std::string &text, std::size_t at) {
   const auto byte = [&](std::size_t n) { return n < text.size() ? static_cast<unsigned char>(text[n]) : 0U; };
   const unsigned first = byte(at);

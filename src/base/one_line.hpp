@@ -1,12 +1,12 @@
-// Texts: lines that a terminal shows, printed numbers, letters in lower case.
+// Makes text of any origin printable as one line, prints numbers into text, and lower-case text.
 #pragma once
 
 #include <string>
 
 namespace eulastic {
 
-/// `text` with ? in place of every control character and of every byte that is not UTF-8, and with its middle left out
-/// if it has more than 1000 bytes.
+/// Returns `text` with every control character and every byte that is not UTF-8 replaced by ?, and shortened in the
+/// middle if it has more than 1000 bytes.
 std::string one_line(std::string text);
 
 /// What printf() prints, at most 1000 bytes.

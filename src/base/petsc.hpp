@@ -1,4 +1,4 @@
-// PETSc handles that release themselves, and the PETSc headers everybody needs.
+// RAII handles of PETSc objects, and the PETSc headers that all files need.
 #pragma once
 
 #include <petscdmda.h>
@@ -10,7 +10,7 @@
 
 namespace eulastic {
 
-/// Owns one PETSc object; movable, not copyable. `put()` hands the address to a Create function.
+/// Owns one PETSc object; movable, not copyable. Pass put() to a Create function.
 template <class T, PetscErrorCode (*Destroy)(T *)>
 class Handle {
 public:
@@ -46,7 +46,7 @@ using DmHandle = Handle<DM, DMDestroy>;
 using VecHandle = Handle<Vec, VecDestroy>;
 using SfHandle = Handle<PetscSF, PetscSFDestroy>;
 
-/// `count` values of a datatype, one after the other.
+/// The datatype of `count` contiguous values of another datatype.
 class MpiType {
 public:
   MpiType() = default;
@@ -55,7 +55,7 @@ public:
   ~MpiType() {
     if (type_ != MPI_DATATYPE_NULL) (void)MPI_Type_free(&type_);
   }
-  /// Once.
+  /// May be called once.
   PetscErrorCode create(std::size_t count, MPI_Datatype of) {
     PetscFunctionBeginUser;
     PetscCallMPI(MPI_Type_contiguous(static_cast<int>(count), of, &type_));

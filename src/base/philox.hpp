@@ -1,5 +1,5 @@
-// Philox4x32-10, a counter-based random number generator: Salmon, Moraes, Dror & Shaw, SC 2011. A number depends on its
-// counter and key alone, so that chance is the same on any number of ranks and after a restart.
+// Philox4x32-10, a counter-based random number generator (Salmon, Moraes, Dror & Shaw, SC 2011). A number depends on
+// its counter and key alone, so that random events are the same on any number of ranks and after a restart.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@ namespace eulastic {
 
 using PhiloxCounter = std::array<std::uint32_t, 4>;
 
-/// Ten rounds.
+/// Returns four random 32-bit numbers after ten rounds.
 inline PhiloxCounter philox(PhiloxCounter counter, std::array<std::uint32_t, 2> key) noexcept {
   for (int round = 0; round < 10; ++round) {
     const std::uint64_t a = std::uint64_t{0xD2511F53u} * counter[0], b = std::uint64_t{0xCD9E8D57u} * counter[2];
@@ -21,7 +21,7 @@ inline PhiloxCounter philox(PhiloxCounter counter, std::array<std::uint32_t, 2> 
   return counter;
 }
 
-/// In [0, 1), of 53 bits.
+/// Returns a uniformly distributed number in [0, 1) with 53 random bits.
 inline double uniform(const PhiloxCounter &random) noexcept {
   const std::uint64_t bits = (std::uint64_t{random[0]} << 32) | random[1];
   return static_cast<double>(bits >> 11) * 0x1p-53;

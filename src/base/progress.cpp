@@ -20,12 +20,12 @@ std::string duration(double seconds) {
 
 Progress::Style Progress::style_of(std::FILE *out, int rank) {
   if (rank != 0) return Style::silent;
-  // The mpiexec of Open MPI gives rank 0 a terminal of its own, whatever its output goes to.
-  const bool is_ours = std::getenv("OMPI_COMM_WORLD_RANK") == nullptr;
-  return is_ours && ::isatty(::fileno(out)) ? Style::terminal : Style::log;
+  // The mpiexec of Open MPI gives rank 0 a pseudo-terminal even if its output is redirected to a file.
+  const bool is_direct = std::getenv("OMPI_COMM_WORLD_RANK") == nullptr;
+  return is_direct && ::isatty(::fileno(out)) ? Style::terminal : Style::log;
 }
 
-// The run ends when the first of the two goals is reached.
+// The run ends when the first of its two limits, time or steps, is reached.
 double Progress::fraction(double time, long step) const {
   double done = 0;
   if (goal_.time_end > goal_.time_begin) done = (time - goal_.time_begin) / (goal_.time_end - goal_.time_begin);
@@ -34,9 +34,9 @@ double Progress::fraction(double time, long step) const {
   return std::clamp(done, 0.0, 1.0);
 }
 
-double Progress::left(long step, const Mark &now) const {
-  constexpr long few = 16;  // the staggered integrator starts with six steps that double
-  if (step - goal_.steps_begin < few || now.wall - earlier_.wall < 1 || now.done <= earlier_.done) return -1;
+double Progress::seconds_left(long step, const Mark &now) const {
+  constexpr long steps_needed = 16;  // the automatic time step is small at the start
+  if (step - goal_.steps_begin < steps_needed || now.wall - earlier_.wall < 1 || now.done <= earlier_.done) return -1;
   return (now.wall - earlier_.wall) * (1 - now.done) / (now.done - earlier_.done);
 }
 
@@ -47,7 +47,7 @@ std::string Progress::line(double time, long step, double dt, double wall) const
 }
 
 void Progress::print(const std::string &text, double wall) {
-  // \033[K clears what a longer line left behind.
+  // The escape sequence \033[K clears the rest of a longer previous line.
   std::fprintf(out_, style_ == Style::terminal ? "\r%s\033[K" : "%s\n", text.c_str());
   std::fflush(out_);
   last_wall_ = wall;
@@ -61,11 +61,11 @@ void Progress::update(double time, long step, double dt, double wall) {
     latest_ = now;
     next_ = 2 * steps;
   }
-  const double since = wall - last_wall_, seconds = left(step, now);
+  const double since = wall - last_wall_, seconds = seconds_left(step, now);
   const int mark = static_cast<int>(20 * now.done + 1e-9);
-  const bool news = mark > last_mark_ || (seconds >= 0 && !estimated_);
-  const bool due = style_ == Style::terminal ? since >= 0.2 : (news && since >= 10) || since >= 600;
-  if (!due) return;
+  const bool notable = mark > last_mark_ || (seconds >= 0 && !estimated_);
+  const bool print_now = style_ == Style::terminal ? since >= 0.2 : (notable && since >= 10) || since >= 600;
+  if (!print_now) return;
   print(line(time, step, dt, wall) + (seconds < 0 ? "" : "  " + duration(seconds) + " left"), wall);
   last_mark_ = mark;
   estimated_ = estimated_ || seconds >= 0;

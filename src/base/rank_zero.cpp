@@ -7,7 +7,7 @@
 namespace eulastic {
 namespace {
 
-MPI_Comm current = MPI_COMM_NULL;  // MPI_COMM_WORLD
+MPI_Comm current = MPI_COMM_NULL;  // null: MPI_COMM_WORLD
 
 }  // namespace
 
@@ -20,7 +20,7 @@ int share_bytes(void *bytes, std::size_t count, MPI_Comm comm) {
   constexpr std::size_t piece = std::size_t{1} << 26;
   for (std::size_t begin = 0; begin < count; begin += piece) {
     const int length = static_cast<int>(std::min(piece, count - begin));
-    if (const int failed = MPI_Bcast(static_cast<char *>(bytes) + begin, length, MPI_BYTE, 0, comm)) return failed;
+    if (const int error = MPI_Bcast(static_cast<char *>(bytes) + begin, length, MPI_BYTE, 0, comm)) return error;
   }
   return MPI_SUCCESS;
 }
@@ -34,20 +34,20 @@ bool is_file(const std::string &path) {
 
 bool read_file_here(const std::string &path, std::string *bytes) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;  // a FIFO waits for ever, a device never ends
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;  // reading a FIFO or a device might never end
   std::FILE *file = std::fopen(path.c_str(), "re");
   if (!file) return false;
   char piece[1 << 14];
   bytes->clear();
   while (const std::size_t length = std::fread(piece, 1, sizeof piece, file)) bytes->append(piece, length);
-  const bool whole = std::ferror(file) == 0;
-  return std::fclose(file) == 0 && whole;
+  const bool complete = std::ferror(file) == 0;
+  return std::fclose(file) == 0 && complete;
 }
 
 bool read_file(const std::string &path, std::string *bytes) {
-  const bool fine = on_rank_0([&] { return read_file_here(path, bytes); });
+  const bool success = on_rank_0([&] { return read_file_here(path, bytes); });
   share(bytes);
-  return fine;
+  return success;
 }
 
 }  // namespace eulastic

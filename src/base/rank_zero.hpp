@@ -12,10 +12,10 @@
 
 namespace eulastic {
 
-/// The communicator of the ranks that run one case: MPI_COMM_WORLD, except within the life of a RunOnRanks.
+/// Returns the communicator of the ranks that run one case: MPI_COMM_WORLD, or that of the RunOnRanks that exists.
 MPI_Comm run_communicator() noexcept;
 
-/// Parses and runs cases on `comm` instead of MPI_COMM_WORLD until it is destroyed, so that one process can run cases
+/// During its lifetime cases are parsed and run on `comm` instead of MPI_COMM_WORLD, so that one process can run cases
 /// on several numbers of ranks.
 class RunOnRanks {
 public:
@@ -28,10 +28,10 @@ private:
   MPI_Comm before_;
 };
 
-/// Makes the bytes of rank 0 everybody's, in pieces of bounded size. Returns MPI's error code.
+/// Broadcasts bytes of rank 0 in pieces of bounded size. Returns MPI's error code.
 int share_bytes(void *bytes, std::size_t count, MPI_Comm comm = run_communicator());
 
-/// Makes `value` of rank 0 everybody's: plain bytes, or a string or vector of such, which takes its size.
+/// Broadcasts `value` of rank 0: a trivially copyable type, or a string or vector of such, which is resized.
 template <class T>
 void share(T *value) {
   if constexpr (std::is_trivially_copyable_v<T>) {
@@ -44,21 +44,23 @@ void share(T *value) {
   }
 }
 
-/// What `look` returns on rank 0, where alone it is called.
-template <class Look>
-auto on_rank_0(Look look) {
+/// Calls `read` on rank 0 only and returns its result on all ranks.
+template <class Read>
+auto on_rank_0(Read read) {
   int rank;
   (void)MPI_Comm_rank(run_communicator(), &rank);
-  decltype(look()) found{};
-  if (rank == 0) found = look();
-  share(&found);
-  return found;
+  decltype(read()) result{};
+  if (rank == 0) result = read();
+  share(&result);
+  return result;
 }
 
+/// Whether `path` is a regular file, as rank 0 sees it. Collective.
 bool is_file(const std::string &path);
-/// All bytes of a regular file, read by this rank for itself; false if it is none or cannot be read.
+/// Reads all bytes of a regular file on the calling rank. Returns false if it is no regular file or cannot be read.
 bool read_file_here(const std::string &path, std::string *bytes);
-/// All bytes of a regular file; false if it is none or cannot be read.
+/// Reads all bytes of a regular file on rank 0 and broadcasts them. Returns false if it is no regular file or cannot be
+/// read. Collective.
 bool read_file(const std::string &path, std::string *bytes);
 
 }  // namespace eulastic

@@ -11,11 +11,11 @@
 namespace eulastic {
 namespace {
 
-// With a core of its own a thread looks for work for some ten milliseconds, longer than what lies between two parallel
-// regions of a step; without, for some microseconds.
+// Number of polls before a waiting thread sleeps. With a core of its own a thread polls for about ten milliseconds,
+// longer than the time between two parallel regions of a step; on a shared core, for some microseconds.
 constexpr int spins_of_own_core = 1000000, spins_of_shared_core = 100;
 
-// Tells the processor that this thread polls; a hint that not every processor has.
+// Hints to the processor that this thread polls, where the processor has such an instruction.
 void relax() noexcept {
 #ifdef __x86_64__
   _mm_pause();
@@ -24,7 +24,7 @@ void relax() noexcept {
 
 thread_local bool is_inside = false;
 thread_local int own_number = 0;
-thread_local double *own_flops = nullptr;  // null: no TeamMember
+thread_local double *own_flops = nullptr;  // null: this thread is no TeamMember
 
 }  // namespace
 
@@ -43,15 +43,15 @@ void ThreadTeam::resize(int size) {
   if (size == this->size()) return;
   {
     const std::lock_guard lock(mutex_);
-    ends_ = true;
+    stop_ = true;
     ++region_;
   }
   wake_.notify_all();
-  for (std::thread &other : others_) other.join();
-  others_.clear();
-  ends_ = false;
+  for (std::thread &worker : workers_) worker.join();
+  workers_.clear();
+  stop_ = false;
   region_ = 0;
-  for (int thread = 1; thread < size; ++thread) others_.emplace_back([this, thread] { serve(thread); });
+  for (int thread = 1; thread < size; ++thread) workers_.emplace_back([this, thread] { serve(thread); });
 }
 
 void ThreadTeam::run(int members, Call call, const void *work) {
@@ -61,11 +61,11 @@ void ThreadTeam::run(int members, Call call, const void *work) {
   running_.store(members - 1, std::memory_order_relaxed);
   region_ = (((region_ >> members_bits) + 1) << members_bits) | static_cast<std::uint64_t>(members);
   if (asleep_ > 0) {
-    // With the lock no thread is between its last look at region_ and its sleep.
+    // Taking the lock ensures that no thread is between its test of region_ and its sleep.
     { const std::lock_guard lock(mutex_); }
     wake_.notify_all();
   }
-  do_part(0);
+  call_work(0);
   for (int spin = 0; running_.load(std::memory_order_acquire) > 0; ++spin) {
     if (spin < spins_.load(std::memory_order_relaxed))
       relax();
@@ -75,7 +75,7 @@ void ThreadTeam::run(int members, Call call, const void *work) {
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
-void ThreadTeam::do_part(int thread) noexcept {
+void ThreadTeam::call_work(int thread) noexcept {
   is_inside = true;
   try {
     call_(work_, thread);
@@ -86,7 +86,7 @@ void ThreadTeam::do_part(int thread) noexcept {
   is_inside = false;
 }
 
-// The region after `last`, which this thread has seen.
+// Returns the parallel region that follows `last`, once it has begun.
 std::uint64_t ThreadTeam::wait_for_region(std::uint64_t last) {
   for (int spin = spins_.load(std::memory_order_relaxed); spin > 0; --spin) {
     const std::uint64_t region = region_.load(std::memory_order_acquire);
@@ -103,9 +103,9 @@ std::uint64_t ThreadTeam::wait_for_region(std::uint64_t last) {
 void ThreadTeam::serve(int thread) {
   for (std::uint64_t region = 0;;) {
     region = wait_for_region(region);
-    if (ends_) return;
+    if (stop_) return;
     if (thread >= static_cast<int>(region & ((1 << members_bits) - 1))) continue;
-    do_part(thread);
+    call_work(thread);
     running_.fetch_sub(1, std::memory_order_release);
   }
 }

@@ -1,5 +1,5 @@
-// The threads of a rank. The first is the one that started the program, which alone calls MPI and PETSc; the others
-// wait for work from one parallel region to the next.
+// The threads of a rank. The main thread alone calls MPI and PETSc; the others, the workers, wait for work between
+// parallel regions.
 #pragma once
 
 #include <atomic>
@@ -12,32 +12,33 @@
 
 namespace eulastic {
 
-/// How a thread waits.
+/// The way in which a worker waits for the next parallel region.
 enum class Waiting {
-  spin,   ///< it keeps its core, for some milliseconds at least, and goes on within a microsecond
-  sleep,  ///< it gives its core to whoever has work
+  spin,   ///< polls for some milliseconds before it sleeps, and responds within a microsecond
+  sleep,  ///< sleeps almost at once, so that its core is free for other threads
 };
 
+/// The threads of a rank, which run parallel regions together.
 class ThreadTeam {
 public:
   ThreadTeam() noexcept { set_waiting(Waiting::sleep); }
   ~ThreadTeam() { resize(1); }
   ThreadTeam(const ThreadTeam &) = delete;
   ThreadTeam &operator=(const ThreadTeam &) = delete;
-
+  /// Returns the team of this rank. Initially it consists of one thread, with Waiting::sleep.
   /// That of this rank: one thread, which sleeps when it waits, until told otherwise.
   static ThreadTeam &of_rank() noexcept;
-
+  /// Sets the number of threads, 1 to 65,535.
   /// `size`: threads, at least 1 and at most 65,535.
   void resize(int size);
-  int size() const noexcept { return static_cast<int>(others_.size()) + 1; }
+  int size() const noexcept { return static_cast<int>(workers_.size()) + 1; }
   /// Whether the calling thread is inside of run().
   static bool is_in_region() noexcept;
-  /// Outside of run().
+  /// Must be called outside of run().
   void set_waiting(Waiting how) noexcept;
 
-  /// work(t) for 0 <= t < members, at most size(), each on the thread of that number. By the first thread, outside of
-  /// work(). Throws what any of them has thrown.
+  /// Calls work(t) for 0 <= t < members <= size() on thread t and returns when all have finished. Only the main thread
+  /// may call it, outside of a parallel region. Rethrows an exception of any thread.
   template <class Work>
   void run(int members, const Work &work) {
     run(
@@ -49,36 +50,36 @@ private:
   void run(int members, Call call, const void *work);
   void serve(int thread);
   std::uint64_t wait_for_region(std::uint64_t last);
-  void do_part(int thread) noexcept;
+  void call_work(int thread) noexcept;
 
   static constexpr int members_bits = 16;
-  /// Number of the parallel region, and of the threads that take part in it. A thread that takes no part reads nothing
-  /// else of the region, which may be over before it looks.
+  /// Counter of parallel regions, and in the lowest bits the number of threads that take part. A thread that takes no
+  /// part must not read anything else of the region, which may have ended.
   std::atomic<std::uint64_t> region_{0};
   std::atomic<int> running_{0}, asleep_{0};
-  std::atomic<int> spins_;  ///< how often a thread looks for work before it sleeps
-  std::atomic<bool> ends_{false};
+  std::atomic<int> spins_;  ///< number of polls before a waiting thread sleeps
+  std::atomic<bool> stop_{false};
   Call call_ = nullptr;
   const void *work_ = nullptr;
   std::exception_ptr thrown_;
-  std::mutex mutex_;  ///< of thrown_ and of those that sleep
+  std::mutex mutex_;  ///< protects thrown_ and the sleep of workers
   std::condition_variable wake_;
-  std::vector<std::thread> others_;
+  std::vector<std::thread> workers_;
 };
 
-/// Marks a thread, from construction to destruction, as one that does whole tasks, each all of a body: it shares its
-/// loops with no other, logs no events and calls no MPI.
+/// Marks a thread, from construction to destruction, as one that processes whole tasks, such as bodies in boxes: it
+/// runs all loops of its task alone, logs no events and calls no MPI.
 class TeamMember {
 public:
-  /// `number`: in the team, from 0 on. `flops`: those of its verbs are added there.
+  /// `number` is that of the thread in its team, from 0. The flops of its routines are added to *flops.
   TeamMember(int number, double *flops) noexcept;
   ~TeamMember();
   TeamMember(const TeamMember &) = delete;
   TeamMember &operator=(const TeamMember &) = delete;
 
-  /// Whether this thread does such tasks.
+  /// Whether the calling thread is a team member.
   static bool is_here() noexcept;
-  /// Its number there; 0 outside of any.
+  /// Returns the number of the calling thread in its team; 0 outside of a team.
   static int number() noexcept;
   static void add_flops(double count) noexcept;
 };

@@ -3,7 +3,7 @@
 namespace eulastic {
 namespace {
 
-// `width` values of a body. PetscSF has no maxima of types that are not built in.
+// MPI type of `width` values of a body. For one value it is the built-in type, for which alone PetscSF computes maxima.
 class Unit {
 public:
   explicit Unit(int width) {
@@ -39,7 +39,7 @@ PetscErrorCode BodyOwners::connect(MPI_Comm comm, int bodies, std::vector<int> h
   for (std::size_t slot = 0; slot < here_.size(); ++slot) {
     const int owner = BodyRange::owner(here_[slot], bodies, ranks);
     owners.push_back({owner, here_[slot] - BodyRange::of(bodies, owner, ranks).begin});
-    std::size_t n = first_look(here_[slot]);
+    std::size_t n = first_slot(here_[slot]);
     while (slots_[n] >= 0) n = (n + 1) & (slots_.size() - 1);
     slots_[n] = static_cast<int>(slot);
   }

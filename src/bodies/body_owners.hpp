@@ -1,5 +1,5 @@
-// Who adds up what of which body: every rank owns a range of all bodies and hears of them from the ranks that have
-// cells of theirs. What a rank holds and sends is in proportion to its own bodies and those it owns.
+// Ownership of per-body sums: every rank owns a range of all bodies and receives contributions from the ranks that hold
+// cells of them. Memory and messages of a rank are proportional to the bodies it holds and owns.
 #pragma once
 
 #include "base/body_range.hpp"
@@ -17,35 +17,36 @@ public:
   BodyOwners &operator=(const BodyOwners &) = delete;
   ~BodyOwners();
 
-  /// Of `bodies`; `here`: those that have something on this rank, ascending. Collective, once.
+  /// Sets up the communication for `bodies` bodies; `here`: those with cells on this rank, ascending. Call once.
+  /// Collective.
   PetscErrorCode connect(MPI_Comm comm, int bodies, std::vector<int> here);
 
   const BodyRange &owned() const { return owned_; }
   const std::vector<int> &here() const { return here_; }
-  /// Position in here(), or -1.
+  /// Returns the position of a body in here(), or -1.
   int slot(int body) const {
     if (body < 0) return -1;
-    for (std::size_t n = first_look(body);; n = (n + 1) & (slots_.size() - 1))
+    for (std::size_t n = first_slot(body);; n = (n + 1) & (slots_.size() - 1))
       if (slots_[n] < 0 || here_[static_cast<std::size_t>(slots_[n])] == body) return slots_[n];
   }
 
-  /// Combines `width` values of every body here() with those of the owned bodies, there or on another rank; `op`:
-  /// MPI_SUM, or MPI_MAX of one value.
+  /// Reduces `width` values of every body in here() into those of its owner; `op`: MPI_SUM, or MPI_MAX with width 1.
+  /// Collective.
   PetscErrorCode reduce(int width, MPI_Op op, const std::vector<double> &here, std::vector<double> *owned) const;
-  /// Copies `width` values of the owned bodies to all that have them here().
+  /// Broadcasts `width` values of the owned bodies to all ranks that have them in here(). Collective.
   PetscErrorCode bring(int width, const std::vector<double> &owned, std::vector<double> *here) const;
 
 private:
-  std::size_t first_look(int body) const { return static_cast<unsigned>(body) * 0x9e3779b97f4a7c15U >> shift_; }
+  std::size_t first_slot(int body) const { return static_cast<unsigned>(body) * 0x9e3779b97f4a7c15U >> shift_; }
 
   BodyRange owned_;
   std::vector<int> here_;
-  std::vector<int> slots_ = {-1, -1};  ///< positions by a hash of the body, at most half of them taken; -1: nobody
-  int shift_ = 63;                     ///< of 64 bits, to as many as there are slots
+  std::vector<int> slots_ = {-1, -1};  ///< hash table of positions in here_, at most half full; -1: empty
+  int shift_ = 63;                     ///< right shift of the 64-bit hash to the size of the table
   PetscSF sf_ = nullptr;
 };
 
-/// The first `limit` of `bodies` values in the order of the bodies, on rank 0 alone, from those of the owners, at most
+/// Gathers the first `limit` of `bodies` values from their owners to rank 0, in the order of the bodies and at most
 /// BodyRange::piece at a time. Collective.
 template <class T>
 PetscErrorCode gather_bodies(MPI_Comm comm, int bodies, int limit, const std::vector<T> &owned, std::vector<T> *all) {

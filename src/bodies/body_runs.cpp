@@ -9,7 +9,8 @@ namespace {
 constexpr int lanes = 8;
 constexpr double full_cell = 0.999;
 
-// As lane_sum() adds up: terms lie where the lanes of their cells are, zeros beside them.
+// Sums in eight lanes like lane_sum(): a term goes to the lane of its cell's global index, so that the bits do not
+// depend on the decomposition.
 class Lanes {
 public:
   EULASTIC_INLINE Lanes(int first, int n) : first_(first), n_(n), vectors_((first + n + lanes - 1) / lanes) {
@@ -46,7 +47,7 @@ EULASTIC_CLONES void add_up(const Box &box, const Run &run, const RunPlaces &pla
     const double *face = run.of(*velocity, d), *next = face + (*velocity)[d].stride(d);
     sums->momentum[d] = lane.sum([=](int i) EULASTIC_BODY { return phi[i] * (0.5 * (face[i] + next[i])); });
   }
-  if (run.phase.material.is_membrane()) return;  // B_s says nothing of the inside
+  if (run.phase.material.is_membrane()) return;  // a membrane's B is defined on its surface only
   sums->full_cells = lane.sum([=](int i) EULASTIC_BODY { return phi[i] > full_cell ? 1.0 : 0.0; });
   if (sums->full_cells == 0) return;
   for (int f = 0; f < run.phase.tensor.field.count(); ++f) {

@@ -1,4 +1,5 @@
-// Sums over the cells of bodies, run by run: exact to the last bit on any ranks, without a sum for every cell.
+// Sums over the cells of bodies by runs within rows: the bits do not depend on the ranks, and exact sums are needed per
+// run only, not per cell.
 #pragma once
 
 #include "base/exact_sum.hpp"
@@ -14,13 +15,13 @@
 
 namespace eulastic {
 
-/// Cells [begin, end) of a row that have the label of one body, all in one block of ExactSums by absolute x index: the
-/// same on any ranks, and so are sums over their lanes.
+/// Cells [begin, end) of a row with the label of one body that lie in one block of ExactSums by global x index. Runs,
+/// and sums over their lanes, do not depend on the ranks.
 struct Run {
   const Phase &phase;
-  int body;  ///< its slot
+  int body;  ///< slot in BodyOwners::here()
   int begin, end, j, k;
-  int first;  ///< absolute x index of the first cell, which gives cells their lanes
+  int first;  ///< global x index of the first cell, which determines the lanes of the cells
   int size() const { return end - begin; }
   const double *of(const Field &block, int f) const { return block[f].row(j, k) + begin; }
 };
@@ -48,24 +49,24 @@ void for_each_run(const Box &box, const RowPart &part, const std::vector<Phase> 
   }
 }
 
-/// Sums over the cells of a run: of phi, of it times x and x^2, x in cells from a reference, of it times the velocity,
-/// and over full cells of 1 and of B.
+/// Sums over the cells of a run: of phi, phi x, phi x^2 (x in cells from a reference), phi u; the number of full cells
+/// and the sum of B over them.
 struct RunSums {
   double fraction = 0, first_moment = 0, second_moment = 0;
   Real3 momentum{};
   double full_cells = 0;
   std::array<double, 6> tensor{};
 };
-/// Places of the cells of a run, in cells from a reference.
+/// Positions of the cells of a run, in cells from a reference.
 struct RunPlaces {
   double x[ExactSums::block];
   double y, z;
 };
-/// From the nearest image of the reference cell.
+/// Returns positions relative to the nearest periodic image of the reference cell.
 RunPlaces places_of(const Box &box, const Run &run, const Int3 &reference);
-/// The first three sums.
+/// Returns the first three sums only.
 RunSums sum_positions(const Box &box, const Run &run, const RunPlaces &places);
-/// All of them; one ghost of velocity and B.
+/// Returns all sums; needs one ghost layer of velocity and B.
 RunSums sum_all(const Box &box, const Run &run, const RunPlaces &places, const Field &velocity);
 
 }  // namespace eulastic

@@ -4,7 +4,7 @@ namespace eulastic {
 namespace {
 
 constexpr int fixed_bits = 48;
-// A sum travels as three doubles that are integers: of 2^19 ranks they stay below 2^53, and so exact.
+// A sum is sent as three integers in doubles; summed over 2^19 ranks they stay below 2^53 and therefore exact.
 constexpr int words = 3, word_bits = 34;
 
 }  // namespace

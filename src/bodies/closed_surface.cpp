@@ -10,13 +10,13 @@
 namespace eulastic {
 namespace {
 
-// A triangle cut six times; even with round-off a cut makes at most 3/2 as many corners.
+// A triangle after up to six cuts; each cut multiplies the number of corners by at most 3/2, round-off included.
 struct Polygon {
   int n = 0;
   std::array<Real3, 36> corner;
 };
 
-// The part with x_d >= plane (side = 1) or <= plane (side = -1). Sutherland & Hodgman.
+// Returns the part with x_d >= plane (side = 1) or <= plane (side = -1): Sutherland and Hodgman, Comm. ACM 17 (1974).
 Polygon cut(const Polygon &polygon, int d, double plane, int side) noexcept {
   Polygon result;
   for (int a = 0; a < polygon.n; ++a) {
@@ -24,7 +24,7 @@ Polygon cut(const Polygon &polygon, int d, double plane, int side) noexcept {
     const bool p_in = side * (p[d] - plane) >= 0, q_in = side * (q[d] - plane) >= 0;
     if (p_in) result.corner[result.n++] = p;
     if (p_in == q_in) continue;
-    // From the low end: the neighbouring triangle has the same point on this edge.
+    // Interpolating from the low end gives the neighbouring triangle the same point on this edge.
     const Real3 &low = p[d] < q[d] ? p : q, &high = p[d] < q[d] ? q : p;
     const double t = (plane - low[d]) / (high[d] - low[d]);
     Real3 &point = result.corner[result.n++];
@@ -46,8 +46,8 @@ double high_end(const Polygon &polygon, int d) noexcept {
   return x;
 }
 
-// Pieces between the cell faces c and c + 1, begin <= c < end. Each is cut out of the whole, so that its bits do not
-// depend on `begin`.
+// Calls visit(c, piece) for the pieces between the cell faces c and c + 1, begin <= c < end. Each is cut out of the
+// whole polygon, so that its bits do not depend on `begin`.
 template <class Visit>
 void for_strips(const Polygon &polygon, int d, int begin, int end, Visit visit) {
   if (polygon.n < 3) return;
@@ -63,8 +63,8 @@ void for_strips(const Polygon &polygon, int d, int begin, int end, Visit visit) 
 }
 
 struct Projection {
-  double area = 0;    // along x, positive where the normal is
-  double moment = 0;  // integral of x over it
+  double area = 0;    // projected along x, positive if the normal's x component is
+  double moment = 0;  // integral of x over the projected area
 };
 
 Projection project(const Polygon &polygon, double x) noexcept {
@@ -81,7 +81,8 @@ Projection project(const Polygon &polygon, double x) noexcept {
 
 std::uint64_t fixed(double volume) { return static_cast<std::uint64_t>(std::llround(std::ldexp(volume, 50))); }
 
-// Differences in x of the volumes, one cell more than there are; unsigned, so that a mess of triangles may wrap around.
+// Differences of the volumes along x, with one cell more than the window has. Unsigned, so that invalid surfaces wrap
+// around without undefined behaviour.
 class Volumes {
 public:
   explicit Volumes(const CellWindow &window)
@@ -92,7 +93,7 @@ public:
       for_strips(in_z, 1, begin_[1], begin_[1] + n_[1], [&](int j, const Polygon &column) {
         const double low = low_end(column, 0);
         if (low >= begin_[0] + n_[0]) return;
-        if (low < 0)  // before the box: all cells are behind it
+        if (low < 0)  // before the domain: all cells are at higher x
           if (const Polygon before = cut(column, 0, 0, -1); before.n >= 3)
             at(0, j, k) -= sign * fixed(project(before, 0).area);
         for_strips(column, 0, 0, begin_[0] + n_[0], [&](int i, const Polygon &piece) {
@@ -111,7 +112,7 @@ public:
   }
 
 private:
-  // Cells on the low side of the window are only summed up.
+  // Cells before the window are accumulated in its first one.
   std::uint64_t &at(int i, int j, int k) {
     const std::size_t row = std::size_t(k - begin_[2]) * n_[1] + (j - begin_[1]);
     return sums_[row * (n_[0] + 1) + std::max(i - begin_[0], 0)];
@@ -131,7 +132,7 @@ std::string why_not_closed(const std::vector<Triangle> &triangles) {
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return corner(a) < corner(b); });
   for (std::size_t n = 0; n < order.size(); ++n)
     name[order[n]] = n > 0 && corner(order[n]) == corner(order[n - 1]) ? name[order[n - 1]] : std::uint32_t(n);
-  std::vector<Edge> forward, backward;  // from the lower name to the higher one, and those from the higher
+  std::vector<Edge> forward, backward;  // from the lower to the higher corner, and from the higher to the lower
   for (std::uint32_t n = 0; n < name.size(); ++n) {
     const std::uint32_t a = name[n], b = name[n % 3 == 2 ? n - 2 : n + 1];
     if (a < b) forward.push_back({a, b});

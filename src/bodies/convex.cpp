@@ -8,7 +8,7 @@ namespace {
 
 double dot(const Real3 &a, const Real3 &b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// Radius of the flat disc that, rounded by half the thickness, holds the red cell.
+// Returns the radius of the flat disc that, rounded by half the thickness, encloses the red cell.
 double flat_radius(const Surface &surface, int axis, double half_thickness) {
   double radius = 0;
   constexpr int samples = 256;
@@ -19,10 +19,10 @@ double flat_radius(const Surface &surface, int axis, double half_thickness) {
     n[(axis + 1) % 3] = std::sin(angle);
     radius = std::max(radius, (surface.support(n) - half_thickness) / std::sin(angle));
   }
-  return 1.0001 * radius;  // between the samples
+  return 1.0001 * radius;  // bounds the values between samples
 }
 
-// Farthest point of the core in a direction of the box, relative to the centre of the body.
+// Returns the farthest point of the core in direction n of the domain, relative to the centre of the body.
 Real3 core_point(const PlacedConvex &p, const Real3 &n) noexcept {
   const Rotation &q = p.rotation;
   Real3 inner;
@@ -31,11 +31,12 @@ Real3 core_point(const PlacedConvex &p, const Real3 &n) noexcept {
   return {dot(q[0], y), dot(q[1], y), dot(q[2], y)};
 }
 
-// Points of the difference of two bodies, each with the point of the first body that it comes from.
+// A simplex of points of the Minkowski difference of two bodies, each with the point of the first body that it stems
+// from.
 struct Simplex {
   using Point = std::array<Real3, 2>;
   std::array<Point, 4> points;
-  std::array<double, 4> part;  // of the points, at the place nearest to the origin
+  std::array<double, 4> part;  // barycentric coordinates of the point nearest to the origin
   int count;
 
   Real3 nearest(int which) const noexcept {
@@ -45,7 +46,7 @@ struct Simplex {
     return sum;
   }
 
-  // Keeps, of all points and a new one, those of the corner, edge or face that is nearest to the origin.
+  // Adds a point and reduces the simplex to its corner, edge or face nearest to the origin.
   void add(const Point &point) noexcept {
     points[count++] = point;
     Simplex best = *this;
@@ -64,7 +65,8 @@ struct Simplex {
   }
 
 private:
-  // Where the plane through the points is nearest to the origin; whether that is between them.
+  // Computes the barycentric coordinates of the nearest point to the origin of the affine hull; returns whether it lies
+  // between the points.
   bool find_parts() noexcept {
     part = {1};
     if (count == 1) return true;
@@ -157,8 +159,8 @@ double PlacedConvex::half_width(int d) const noexcept {
 
 double PlacedConvex::support(const Real3 &n) const noexcept { return dot(core_point(*this, n), n) + body->rounding(); }
 
-// Gilbert's algorithm (SIAM J. Control 4, 1966) on the difference of the cores: v approaches its point nearest to the
-// origin; v.w/|v| is a lower bound of the distance, |v| an upper one.
+// Gilbert's algorithm (SIAM J. Control 4, 1966) on the Minkowski difference of the cores: v converges to its point
+// nearest to the origin; v.w/|v| is a lower bound of the distance and |v| an upper bound.
 bool separated(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept {
   Real3 v;
   for (int d = 0; d < 3; ++d) v[d] = b.centre[d] + shift[d] - a.centre[d];
@@ -185,8 +187,8 @@ bool separated(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift)
   return false;
 }
 
-// The algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics and Automation 4, 1988), as flat bodies side by side
-// need: v is nearest to the origin in the simplex of all points that count.
+// The algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics and Automation 4, 1988), which flat bodies side by
+// side need for convergence: v is the point of the present simplex nearest to the origin.
 Penetration penetration(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept {
   constexpr double converged = 1e-4, cores_meet = 1e-3;  // relative to the square; to the margin
   Real3 v;

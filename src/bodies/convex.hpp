@@ -1,8 +1,8 @@
 // Convex bodies around shapes, for placement without overlap.
 //
-// A core (point, disc, ellipsoid, segment or box) and all within `rounding` of it: a sphere is its own; the red cell is
-// in a rounded disc, 14 % larger; the ellipsoid a in the ellipsoid a - r rounded by r, half a per cent wider for a
-// platelet.
+// A body is a core (point, disc, ellipsoid, segment or box) and all points within `rounding` of it. A sphere is exact;
+// a red cell lies in a rounded disc, 14 % larger; an ellipsoid with semi-axes a in the ellipsoid a - r rounded
+// by r, which is half a per cent wider for a platelet.
 #pragma once
 
 #include "bodies/shapes.hpp"
@@ -11,20 +11,20 @@ namespace eulastic {
 
 class ConvexBody {
 public:
-  /// `margin` is added all around. A cylinder is cut at `length` from its centre.
+  /// Encloses a shape; `margin` is added all around. A cylinder ends at `length` from its centre.
   ConvexBody(const SpeciesSpec &spec, int dimension, double margin, double length = 0);
-  /// A cell of the grid, sharp; half its sides, in 2-D 0 along z.
+  /// A grid cell with sharp edges, by half its sides; in 2-D half_sides[2] is 0.
   explicit ConvexBody(const Real3 &half_sides);
 
-  /// The same body, all its lengths times `factor`.
+  /// Returns the body with all lengths multiplied by `factor`.
   ConvexBody scaled(double factor) const;
 
-  /// Farthest point of the core in direction n, in body coordinates.
+  /// Returns the farthest point of the core in direction n, in body coordinates.
   Real3 core(const Real3 &n) const noexcept;
   double rounding() const { return rounding_; }
-  double outer_radius() const { return outer_; }  ///< of a sphere around it
-  double inner_radius() const { return inner_; }  ///< of a sphere inside it
-  /// Whether its shadow along body axis d is an ellipse.
+  double outer_radius() const { return outer_; }  ///< radius of a circumscribed sphere
+  double inner_radius() const { return inner_; }  ///< radius of an inscribed sphere
+  /// Whether the projection along body axis d is an ellipse.
   bool has_round_shadow(int d) const { return kind_ != Kind::disc || d == axis_; }
 
 private:
@@ -39,23 +39,25 @@ struct PlacedConvex {
   Real3 centre;
   Rotation rotation;
 
-  /// Half its width along coordinate d.
+  /// Half the width along coordinate d.
   double half_width(int d) const noexcept;
-  /// Largest n.(x - centre), |n| = 1.
+  /// Support function: the largest n.(x - centre), |n| = 1.
   double support(const Real3 &n) const noexcept;
 };
 
-/// Whether a and b, moved by `shift`, do not touch. Round-off and very close bodies count as touching.
+/// Returns whether a, and b moved by `shift`, do not touch. Bodies that are within round-off of touching count as
+/// touching.
 bool separated(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept;
 
-/// How deep two bodies overlap: at most the sum of their roundings, also where their cores meet.
+/// Overlap of two bodies; its depth is at most the sum of their roundings, even if their cores intersect.
 struct Penetration {
-  double depth = 0;  ///< 0: they do not touch
-  Real3 normal{};    ///< from a to b, of length 1
-  Real3 point{};     ///< in the middle of the overlap, from the centre of a
-  int other = -1;    ///< b, in a crowd
+  double depth = 0;  ///< 0 if they do not touch
+  Real3 normal{};    ///< unit vector from a to b
+  Real3 point{};     ///< middle of the overlap, relative to the centre of a
+  int other = -1;    ///< index of b in a crowd
 };
-/// Of a and b, moved by `shift`: more exact than separated() where they are flat and side by side, and slower.
+/// Returns the overlap of a, and b moved by `shift`. For flat bodies side by side it is more accurate than separated();
+/// it is slower.
 Penetration penetration(const PlacedConvex &a, const PlacedConvex &b, const Real3 &shift) noexcept;
 
 }  // namespace eulastic

@@ -46,7 +46,7 @@ void Crowd::move(std::size_t b, const PlacedConvex &to) {
   bodies_[b] = to;
 }
 
-// Whether all images of b are farther from a than `reach`.
+// Returns whether all periodic images of b are farther from a than `reach`.
 bool Crowd::is_far(const Real3 &a, const Real3 &b, double reach) const {
   double square = 0;
   for (int d = 0; d < dimension_; ++d) {
@@ -63,7 +63,8 @@ bool Crowd::any_image(const PlacedConvex &a, const PlacedConvex &b, Stop stop) c
   Int3 from{}, to{};
   for (int d = 0; d < dimension_; ++d) {
     const double x = b.centre[d] - a.centre[d], length = grid_.length[d];
-    if (grid_.boundary[d] == Boundary::wall || std::abs(x) <= length - reach) continue;  // no image is near
+    if (grid_.boundary[d] == Boundary::wall || std::abs(x) <= length - reach)
+      continue;  // only the body itself may be near
     from[d] = static_cast<int>(std::ceil((-reach - x) / length));
     to[d] = static_cast<int>(std::floor((reach - x) / length));
   }
@@ -80,7 +81,7 @@ bool Crowd::clear(const PlacedConvex &a, const PlacedConvex &b) const {
 
 template <class Stop>
 bool Crowd::any_touching(const PlacedConvex &body, std::size_t except, Stop stop) const {
-  Int3 list[3], count{1, 1, 1};  // bins of each direction, none twice
+  Int3 list[3], count{1, 1, 1};  // neighbouring bins along each direction, without duplicates
   for (int d = 0; d < 3; ++d) {
     list[d] = {0, 1, 2};
     if (d >= dimension_ || bins_[d] <= 3) {
@@ -89,12 +90,12 @@ bool Crowd::any_touching(const PlacedConvex &body, std::size_t except, Stop stop
     }
     const int middle = std::clamp(static_cast<int>(body.centre[d] / grid_.length[d] * bins_[d]), 0, bins_[d] - 1);
     count[d] = 0;
-    for (int i : {middle, middle - 1, middle + 1}) {  // the nearest first: what overlaps is found soon
+    for (int i : {middle, middle - 1, middle + 1}) {  // the nearest bin first: overlaps are found early
       const int wrapped = (i + bins_[d]) % bins_[d];
       if (wrapped == i || grid_.boundary[d] == Boundary::periodic) list[d][count[d]++] = wrapped;
     }
   }
-  const double reach = 1.0001 * (body.body->outer_radius() + widest_);  // round-off of images
+  const double reach = 1.0001 * (body.body->outer_radius() + widest_);  // allows for the round-off of images
   for (int k = 0; k < count[2]; ++k)
     for (int j = 0; j < count[1]; ++j)
       for (int i = 0; i < count[0]; ++i) {

@@ -30,7 +30,7 @@ void add_body(const Box &box, const PlacedBody &body, double name, View fraction
         in_parallel(row_parts(box), z.end - z.begin, [&](int k) { add_plane(x, y, z.shift, z.begin + k); });
 }
 
-// The points of a staggering that have a cell of the body beside them: f(local point, the same global and unwrapped).
+// Calls f(local point, global unwrapped point) for the points of a staggering beside a cell that the body may touch.
 template <class F>
 void for_points_of(const Box &box, const PlacedBody &body, const Staggering &at, const F &f) {
   const auto ranges = [&](int d) {
@@ -49,7 +49,7 @@ void for_points_of(const Box &box, const PlacedBody &body, const Staggering &at,
               f(Int3{i - first[0], j - first[1], k - first[2]}, Int3{i + x.shift, j + y.shift, k + z.shift});
 }
 
-// A component of R diag(l^2) R^T.
+// Returns a component of R diag(l^2) R^T.
 double turned_stretch(const SpeciesSpec &spec, const Rotation &R, const TensorComponent &component) {
   const Real3 &l = spec.initial_stretch;
   double turned = 0;
@@ -57,8 +57,8 @@ double turned_stretch(const SpeciesSpec &spec, const Rotation &R, const TensorCo
   return turned;
 }
 
-// B = R diag(l^2) R^T of bodies that are turned. An edge is of the body that fills half of its cells, else of the first
-// that has a part of them.
+// Sets B = R diag(l^2) R^T of rotated bodies. An edge belongs to the body that fills at least half of its four cells,
+// otherwise to the first body that has a part of them.
 void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase) {
   const Real3 &l = spec.initial_stretch;
   if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().carries_tensor()) return;
@@ -78,7 +78,7 @@ void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &p
           if (label(p[0], p[1], p[2]) == first_label + place.index) value = turned;
           return;
         }
-        double sum = 0;  // of the four cells around the edge
+        double sum = 0;  // of phi in the four cells around the edge
         for (int n = 0; n < 4; ++n) {
           Int3 beside = cell;
           beside[x] -= n % 2;
@@ -159,7 +159,7 @@ Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface,
     const TensorComponent &component = phase.tensor.components()[c];
     const double turned = turned_stretch(spec, rotation(place.orientation), component);
     for_points(box.points(component.at), [&](int i, int j, int k) {
-      double sum = 0;  // of the four cells around an edge
+      double sum = 0;  // of phi in the four cells around an edge, or in the cell
       for (int n = 0; n < (component.on_edge() ? 4 : 1); ++n) {
         Int3 beside{i, j, k};
         beside[component.a] -= n % 2;

@@ -1,4 +1,4 @@
-// A phase at the start: solid fraction, left Cauchy-Green tensor and labels of placed bodies.
+// Initial values of a phase: solid fraction, left Cauchy-Green tensor and labels of placed bodies.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -9,24 +9,23 @@
 
 namespace eulastic {
 
-/// Allocates `phase` and fills its owned cells with the bodies of `places` that come near them, which must be known;
-/// ghosts are the caller's. Fraction: of the fullest body of a cell.
-/// Tensor: B = R diag(initial_stretch^2) R^T, R the body's orientation, in cells with phi > 0 and on edges beside them,
-/// I elsewhere. Label: first_label + index of the fullest body (first_label >= 1) where phi > 0, the first of equals;
-/// else 0.
+/// Allocates `phase` and fills its owned cells from the bodies of `places`, of which all near this rank must be known;
+/// the caller updates ghosts. The fraction of a cell is that of the body with the largest one; equal bodies: the first.
+/// Tensor: B = R diag(initial_stretch^2) R^T, with the body's rotation R, in cells with phi > 0 and on edges beside
+/// them, I elsewhere. Label: first_label + index of that body where phi > 0, otherwise 0; first_label >= 1.
 PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
                           Phase *phase);
 
-/// The box of a placed body, cut at sides of the domain: cells that it may touch, the last of which it does not reach,
-/// and `around` more at each end, not wrapped around periodic sides.
+/// Returns the box of a placed body: the cells that it may touch and `around` more at each end, cut at non-periodic
+/// boundaries of the domain and not wrapped around periodic ones.
 Box box_of_body(const DomainShape &domain, const Surface &surface, const BodyPlace &place, int around, int ghosts);
-/// Allocates a phase on the box of a body, with that body alone, as fill_phase() does; no label.
+/// Returns a phase on the box of a body that holds this body only, as fill_phase() fills it, without labels.
 Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place);
 
-/// Of bodies that carry no B: the fraction and the label.
+/// Fills fraction and label of bodies that carry no B.
 void fill_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, Phase *phase);
 
-/// B = diag(initial_stretch^2) in cells with phi > 0, I elsewhere and in bodies without modulus.
+/// Sets B = diag(initial_stretch^2) in cells with phi > 0, and I elsewhere and in bodies without a modulus.
 void stretch_phase(const Box &box, const SpeciesSpec &spec, Phase *phase);
 
 }  // namespace eulastic

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int layers = 4;
 
-// While labels spread, those of named cells are positive, old ones not yet confirmed are negative.
+// A label that a cell may take. While labels spread, confirmed labels are positive and old, unconfirmed ones negative.
 struct Candidate {
   double label = 0, phi = 0;
   bool face = false;
@@ -25,13 +25,13 @@ struct Candidate {
   }
 };
 
-// A cell whose label is not known yet, and what its neighbours say of it.
-struct Open {
+// A cell whose label is not confirmed yet.
+struct OpenCell {
   Int3 cell;
   double label;
 };
 
-// Cells that exist, a layer of ghosts included.
+// Range of existing cells, including one ghost layer.
 struct Reach {
   Int3 from{}, to{};
 
@@ -44,7 +44,7 @@ struct Reach {
   }
 };
 
-// The neighbour of local cell c whose label counts, label 0 if there is none. Named face neighbours come first.
+// Returns the best neighbour of local cell c, with label 0 if there is none. Confirmed face neighbours come first.
 Candidate best_neighbour(const Int3 &c, const Reach &reach, ConstView phi, ConstView label) {
   Candidate best;
   const auto consider = [&](int i, int j, int k, bool face) {
@@ -67,10 +67,10 @@ Candidate best_neighbour(const Int3 &c, const Reach &reach, ConstView phi, Const
   return best;
 }
 
-// The cells of a part that do not keep their label as it is.
+// The cells of a part of the rows whose labels change.
 struct OpenCells {
-  std::vector<Open> open;
-  std::vector<Int3> emptied;  // tell their neighbours whose they were: a body may have left all of its cells
+  std::vector<OpenCell> open;
+  std::vector<Int3> emptied;  // keep their old label until neighbours have seen it: a body may have left all its cells
 };
 
 OpenCells open_cells(const Box &box, const RowPart &part, ConstView phi, View label) {
@@ -80,7 +80,7 @@ OpenCells open_cells(const Box &box, const RowPart &part, ConstView phi, View la
     double *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) {
       if (fraction[i] <= label_threshold) {
-        if (own[i] == 0) continue;  // rest is left at rest: Field::at_rest
+        if (own[i] == 0) continue;  // no write: the page may be shared (Field::at_rest)
         own[i] = -own[i];
         cells.emptied.push_back({i, row.j, row.k});
         continue;
@@ -92,7 +92,7 @@ OpenCells open_cells(const Box &box, const RowPart &part, ConstView phi, View la
   return cells;
 }
 
-// Those alone that have none.
+// Collects only the cells without a label.
 OpenCells new_cells(const Box &box, const RowPart &part, const OccupiedRows &rows, ConstView phi, View label) {
   OpenCells cells;
   for (const Segment &whole : part.rows(box)) {
@@ -104,7 +104,7 @@ OpenCells new_cells(const Box &box, const RowPart &part, const OccupiedRows &row
   return cells;
 }
 
-PetscErrorCode carry(const Box &box, GhostExchange &exchange, bool new_alone, Phase *phase) {
+PetscErrorCode carry(const Box &box, GhostExchange &exchange, bool only_new, Phase *phase) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::bodies);
   PetscCall(exchange.update_ghosts(phase->fraction, 1, &phase->rows));
@@ -112,25 +112,25 @@ PetscErrorCode carry(const Box &box, GhostExchange &exchange, bool new_alone, Ph
   const View label = phase->label[0];
   std::vector<OpenCells> cells(row_parts(box));
   in_row_parts(box, [&](const RowPart &part) {
-    cells[part.number] = new_alone ? new_cells(box, part, phase->rows, phi, label) : open_cells(box, part, phi, label);
+    cells[part.number] = only_new ? new_cells(box, part, phase->rows, phi, label) : open_cells(box, part, phi, label);
   });
   const Reach reach(box);
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update_ghosts(phase->label, 1, &phase->rows));
     in_row_parts(box, [&](const RowPart &part) {
-      for (Open &o : cells[part.number].open) {
+      for (OpenCell &o : cells[part.number].open) {
         const Candidate best = best_neighbour(o.cell, reach, phi, label);
         if (best.label > 0 || o.label == 0) o.label = best.label;
       }
     });
     in_row_parts(box, [&](const RowPart &part) {
-      std::vector<Open> &own = cells[part.number].open;
-      for (const Open &o : own) label(o.cell[0], o.cell[1], o.cell[2]) = o.label;
-      own.erase(std::remove_if(own.begin(), own.end(), [](const Open &o) { return o.label > 0; }), own.end());
+      std::vector<OpenCell> &own = cells[part.number].open;
+      for (const OpenCell &o : own) label(o.cell[0], o.cell[1], o.cell[2]) = o.label;
+      own.erase(std::remove_if(own.begin(), own.end(), [](const OpenCell &o) { return o.label > 0; }), own.end());
     });
   }
   for (const OpenCells &part : cells) {
-    for (const Open &o : part.open) label(o.cell[0], o.cell[1], o.cell[2]) = std::abs(o.label);
+    for (const OpenCell &o : part.open) label(o.cell[0], o.cell[1], o.cell[2]) = std::abs(o.label);
     for (const Int3 &c : part.emptied) label(c[0], c[1], c[2]) = 0;
   }
   PetscFunctionReturn(0);

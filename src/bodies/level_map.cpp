@@ -8,10 +8,10 @@
 namespace eulastic {
 namespace {
 
-constexpr double variance = 1.15;  // of filter and cell, in h^2; filtered once more: 1 more
-constexpr double far = 3;          // widths; levels are cut there
+constexpr double variance = 1.15;  // of filter and cell average, in h^2; a second filter adds 1
+constexpr double far = 3;          // filter widths at which levels are clipped
 
-// The weights 1, 4, 6, 4, 1 over 16 along every direction; two points at the ends are left.
+// Applies the weights (1, 4, 6, 4, 1)/16 along every direction; two points at each end stay unchanged.
 std::vector<double> smooth(const Int3 &size, std::vector<double> from, int dimension) {
   const std::ptrdiff_t stride[3] = {1, size[0], std::ptrdiff_t(size[0]) * size[1]};
   for (int d = 0; d < dimension; ++d) {
@@ -29,8 +29,8 @@ std::vector<double> smooth(const Int3 &size, std::vector<double> from, int dimen
 
 }  // namespace
 
-// The level of the surface itself, as in membranes/surface_cells.cpp: a filter moves a surface by half its variance
-// times the curvature, twice the filter accordingly further.
+// A filter shifts a surface by half its variance times the curvature, and two filters by more; extrapolating from both
+// gives the level of the unfiltered surface, as in membranes/surface_cells.cpp.
 LevelMap::LevelMap(const FractionBox &box, int dimension)
     : dimension_(dimension), size_(box.size), spacing_(box.spacing), first_(box.first) {
   const std::vector<double> once = smooth(size_, box.fraction, dimension), twice = smooth(size_, once, dimension);

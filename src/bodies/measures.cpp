@@ -36,7 +36,7 @@ double largest_trace(const Run &run, int dimension, double so_far) {
   return so_far;
 }
 
-// Solid of a run in cells at sides that bodies flow out through.
+// Returns the sum of phi over cells of a run at open boundaries; `all` is its sum over the whole run.
 double at_open_side(const Box &box, const Run &run, double all) {
   const Int3 cell{run.begin, run.j, run.k};
   const auto is_at = [&](int d, int i) {
@@ -51,7 +51,7 @@ double at_open_side(const Box &box, const Run &run, double all) {
   return sum;
 }
 
-// Sums of owned bodies, of what add(part, sums) adds in every part of the owned rows to those that are here.
+// Sums over all ranks for the owned bodies; add(part, sums) adds the contributions of a part of the owned rows.
 // Collective.
 template <class Add>
 PetscErrorCode sum_bodies(const Box &box, const BodyOwners &owners, const Add &add, BodySums *sums) {
@@ -64,8 +64,9 @@ PetscErrorCode sum_bodies(const Box &box, const BodyOwners &owners, const Add &a
   PetscFunctionReturn(0);
 }
 
-// Semi-axes of the ellipsoid (ellipse) with central second moments M per volume after the stretch B = V V of the mean
-// is undone, longest first. V^-1 M V^-1 has the eigenvalues of M x = lambda B x. Both are xx, yy, zz, yz, xz, xy.
+// Returns the semi-axes, longest first, of the ellipsoid (ellipse) with central second moments M per volume after the
+// mean stretch V, B = V V, is undone: V^-1 M V^-1 has the eigenvalues of M x = lambda B x. Components: xx yy zz yz xz
+// xy.
 Real3 semi_axes(const std::array<double, 6> &M, const std::array<double, 6> &B, int dimension) {
   double m[9], b[9], squares[3] = {}, work[9];  // columns of the lower triangles; squares ascend
   for (int c = 0; c < 6; ++c) {
@@ -76,7 +77,7 @@ Real3 semi_axes(const std::array<double, 6> &M, const std::array<double, 6> &B, 
   const PetscBLASInt type = 1, n = dimension, stride = 3, size = 9;
   PetscBLASInt info;
   LAPACKsygv_(&type, "N", "L", &n, m, &stride, b, &stride, squares, work, &size, &info);
-  Real3 axes{};  // stays 0 where B is not positive definite
+  Real3 axes{};  // 0 if B is not positive definite
   for (int d = 0; d < dimension && info == 0; ++d)
     axes[d] = std::sqrt((dimension + 2) * std::max(squares[dimension - 1 - d], 0.0));
   return axes;
@@ -87,7 +88,7 @@ double taylor_deformation(const Real3 &axes, int dimension) {
   return a + c > 0 ? (a - c) / (a + c) : 0;
 }
 
-// Lengths, deformations and inclination from central second moments per volume and the mean of B.
+// Sets lengths, deformations and inclination from central second moments per volume and the mean of B.
 void set_lengths(const std::array<double, 6> &moments, const std::array<double, 6> &B, int dimension,
                  BodyMeasure *body) {
   body->semi_axes = semi_axes(moments, {1, 1, 1, 0, 0, 0}, dimension);
@@ -103,7 +104,7 @@ struct Largest {
   std::vector<double> trace;
 };
 
-// Scales, the largest tr B of every body, and energy densities along the pieces of rows of every part. Collective.
+// Finds the scales, the largest tr B of every body, and the energy densities of all rows, by parts. Collective.
 PetscErrorCode find_largest(const Domain &domain, const std::vector<Phase> &phases, const Field &velocity,
                             const BodyOwners &owners, const RowEnergy &energy,
                             std::vector<std::vector<double>> *energies, Largest *largest) {
@@ -140,7 +141,7 @@ PetscErrorCode find_largest(const Domain &domain, const std::vector<Phase> &phas
   PetscFunctionReturn(0);
 }
 
-// What the cells of a run, with these energy densities, give to the sums of a body.
+// Adds the contributions of a run, with the given energy densities, to the sums of its body.
 void add_run(const Box &box, const Run &run, const RunPlaces &places, const Field &velocity, const double *density,
              double largest_speed, double largest_energy, BodySums *sums) {
   const int b = run.body;
@@ -190,8 +191,8 @@ BodyMeasure evaluate(const Box &box, const BodySums &sums, int b, const Int3 &re
   return body;
 }
 
-// All of a body that lies in a box of its own, from the cells in which phi is not 0 alone: the same bits wherever the
-// ends of the box are. Places are taken from the middle cell of their extent.
+// Measures a body in a box of its own. Only cells with phi > 0 count and positions are relative to the middle of their
+// extent, so that the bits do not depend on the extent of the box.
 BodyMeasure measure_in_box(const BodyInBox &body, const RowEnergy &energy) {
   const Box &box = *body.box;
   const Phase &phase = *body.phase;
@@ -262,7 +263,7 @@ PetscErrorCode BodyTracker::follow(const Domain &domain, const std::vector<Phase
   for (int b = 0; b < owners.owned().size(); ++b)
     for (int d = 0; d < domain.dimension(); ++d) {
       const double mean = sums.value(b, 0) > 0 ? sums.value(b, first_moment + d) / sums.value(b, 0) : 0;
-      // A body that fills a periodic direction has a mean of -1/2 there and must stay.
+      // A body that fills a periodic direction has the mean -1/2 there; its reference must not move.
       if (std::abs(mean) > 0.75 && std::abs(mean) < 0x1p20) references_[b][d] += static_cast<int>(std::lround(mean));
     }
   PetscFunctionReturn(0);
@@ -309,8 +310,6 @@ PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phas
   PetscFunctionReturn(0);
 }
 
-// Which bodies there are, and the cells that follow them.
-
 void BodyTracker::add_phase(const Domain &domain, const Places &places) {
   const BodyRange own = BodyRange::of(places.count, domain.rank(), domain.ranks());
   for (const NumberedPlace &place : places.known) {
@@ -325,7 +324,7 @@ void BodyTracker::add_phase(const Domain &domain, const Places &places) {
   first_.push_back(first_.back() + places.count);
 }
 
-// Who owns which bodies changes with their number.
+// The owners of bodies depend on the number of bodies: sends what is known to the present owners.
 PetscErrorCode BodyTracker::give_to_owners(const Domain &domain, std::vector<Known> known) {
   std::vector<int> owners;
   PetscFunctionBeginUser;

@@ -8,13 +8,13 @@
 namespace eulastic {
 namespace {
 
-// How far a body reaches along d.
+// Returns the half-width of a body along d, or its bounding radius.
 double reach(const Surface &surface, const BodyPlace &place, int d) {
   const double radius = surface.bounding_radius();
   return std::isfinite(radius) ? radius : surface.support(rotation(place.orientation)[d]);
 }
 
-// The positions along d of ranks that a body comes near.
+// Returns the positions along d, in the grid of ranks, of those that a body is near.
 std::vector<int> positions_near(const Domain &domain, int d, const Surface &surface, const BodyPlace &place) {
   const int cells = domain.domain_cells()[d];
   const double h = domain.spacing()[d], centre = place.centre[d], far = reach(surface, place, d) + h;

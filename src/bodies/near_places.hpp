@@ -1,4 +1,4 @@
-// Which bodies come near which ranks.
+// Which bodies lie near the cells of which ranks.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -8,11 +8,12 @@
 
 namespace eulastic {
 
-/// Whether a body may have a part of the cells of a rank: it is no more than a cell away.
+/// Returns whether a body is within one cell of the cells of a rank.
 bool is_near(const Domain &domain, int rank, const Surface &surface, const BodyPlace &place);
-/// All ranks that it comes near.
+/// Returns all ranks for which is_near() holds.
 std::vector<int> ranks_near(const Domain &domain, const Surface &surface, const BodyPlace &place);
-/// Collective: of all bodies of a species those that come near this rank of `comm`. `grid` may be a planned one.
+/// Sends the bodies of a species to the ranks of `comm` that they are near; `here` gets those of this rank, in order.
+/// `domain` need not be allocated: it may be planned only. Collective.
 PetscErrorCode bring_near(MPI_Comm comm, const Domain &domain, const SpeciesSpec &spec, const Places &places,
                           Places *here);
 

@@ -10,27 +10,27 @@
 namespace eulastic {
 namespace {
 
-constexpr double excess = 0.01;  // of two fractions in a cell: more than the digits of a list of places
-constexpr double skin = 5e-4;    // cells: bodies that only touch need no closer look
+constexpr double excess = 0.01;  // of the sum of two fractions over 1; above the rounding of listed positions
+constexpr double skin = 5e-4;    // in cells: bodies that overlap by less count as touching
 
 bool has_shape(const SpeciesSpec &spec) { return spec.shape != Shape::voxels && spec.shape != Shape::state; }
 bool has_ends(const SpeciesSpec &spec) {
   return has_shape(spec) && spec.shape != Shape::cylinder && !is_attached(spec.shape);
 }
 
-// Whether a body of `two` is to be compared with one of `one` that comes before it.
+// Returns whether bodies of `two` are compared with those of `one`, an earlier species or the same.
 bool is_wanted(const SpeciesSpec &one, const SpeciesSpec &two) {
   if (!has_shape(one) || !has_shape(two) || two.placement == Placement::random) return false;
   if (one.material().attached && two.material().attached) return false;
   return &one != &two || two.contact != Contact::merge;
 }
 
-// Cells of the box that two bodies may touch, and where each has them.
+// A range of cells that two bodies may touch, with the shift to each body's unwrapped indices.
 struct Common {
   int begin, end, shift_a, shift_b;
 };
 
-// How much more than full two bodies make a cell.
+// Returns by how much the fractions of two bodies in a cell exceed 1 together.
 double shared_in(const PlacedBody &a, const PlacedBody &b, const Common (&range)[3], const Int3 &cell) {
   Int3 in_a, in_b;
   for (int d = 0; d < 3; ++d) in_a[d] = cell[d] + range[d].shift_a, in_b[d] = cell[d] + range[d].shift_b;
@@ -38,7 +38,7 @@ double shared_in(const PlacedBody &a, const PlacedBody &b, const Common (&range)
   return std::max(0.0, a.fraction(in_a) + b.fraction(in_b) - 1);
 }
 
-// What a and b share in a range of cells; unless it is `all` to be counted, the first that is found.
+// Returns the sum of shared_in() over a range of cells or, unless `all`, the first value above `excess`.
 double shared_in(const PlacedBody &a, const PlacedBody &b, const Common (&range)[3], bool all) {
   const Common &x = range[0], &y = range[1], &z = range[2];
   const auto middle = [](const Common &c) { return (c.begin + c.end) / 2; };
@@ -54,7 +54,7 @@ double shared_in(const PlacedBody &a, const PlacedBody &b, const Common (&range)
   return sum;
 }
 
-// Of the bodies that a rank knows of, in the order of their labels.
+// Pairs of the bodies that this rank knows, in the order of their labels.
 class Search {
 public:
   Search(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const DomainShape &grid)
@@ -75,11 +75,10 @@ public:
   int bodies() const { return static_cast<int>(bodies_.size()); }
   int label(int b) const { return bodies_[b].label; }
 
-  // Bodies that may share cells, each pair both ways, ascending.
+  // Pairs of bodies that may share cells, in both orders, ascending.
   const std::vector<std::pair<int, int>> &candidates() const { return candidates_; }
 
-  // Whether two bodies, periodic images included, have their centre and their extent in common to a hundredth of a
-  // cell.
+  // Returns whether the centres of two bodies, periodic images included, and their extents agree to 0.01 cells.
   bool at_same_place(int one, int two) const {
     if (!has_ends(spec(one)) || !has_ends(spec(two))) return false;
     for (int d = 0; d < dimension_; ++d) {
@@ -92,7 +91,7 @@ public:
     return true;
   }
 
-  // What two bodies share, or the first part of it that is found.
+  // Returns the volume that two bodies share or, unless `all`, the first part of it that is found.
   double shared(int one, int two, bool all) const {
     const PlacedBody a(surfaces_[whose(one)], grid_, place(one)), b(surfaces_[whose(two)], grid_, place(two));
     std::array<std::vector<Common>, 3> common;
@@ -144,7 +143,8 @@ private:
     std::sort(candidates_.begin(), candidates_.end());
   }
 
-  // Whether the sphere around a body may meet a body without ends. Across its axis a tube has no images.
+  // Returns whether the circumscribed sphere of a body may touch an infinite body. A tube has no images across its
+  // axis.
   bool may_meet(int endless, int b) const {
     const double radius = shapes_[whose(b)].outer_radius();
     const Surface &surface = surfaces_[whose(endless)];

@@ -8,19 +8,20 @@ namespace {
 
 constexpr std::size_t nobody = static_cast<std::size_t>(-1);
 
-// Rows along `row`; those that follow each other along `next` are closer and moved by half a distance. Boxes: next < 0.
-struct Style {
+// Rows run along direction `row`. Successive rows along `next` are closer together and shifted by half a distance;
+// next < 0: a lattice of bounding boxes without a shift.
+struct LatticeStyle {
   int row, next;
 };
 
-std::vector<Style> styles(const PlacedConvex &body, int dimension) {
-  std::vector<Style> list{{0, -1}};
+std::vector<LatticeStyle> lattice_styles(const PlacedConvex &body, int dimension) {
+  std::vector<LatticeStyle> list{{0, -1}};
   bool aligned = true;
   for (const Real3 &row : body.rotation)
     for (double q : row) aligned = aligned && (q == 0 || std::abs(q) == 1);
   if (!aligned) return list;
   for (int across = 0; across < 3; ++across) {
-    int axis = 0;  // of the body, along box direction `across`
+    int axis = 0;  // the body axis that lies along direction `across` of the domain
     for (int d = 0; d < 3; ++d)
       if (body.rotation[across][d] != 0) axis = d;
     const int a = (across + 1) % 3, b = (across + 2) % 3;
@@ -33,7 +34,7 @@ std::vector<Style> styles(const PlacedConvex &body, int dimension) {
 
 class Lattice {
 public:
-  Lattice(const Region &region, const DomainShape &grid, const PlacedConvex &body, const Style &style,
+  Lattice(const Region &region, const DomainShape &grid, const PlacedConvex &body, const LatticeStyle &style,
           const Int3 &offset, double stretch)
       : region_(region), grid_(grid), body_(body), style_(style), stretch_(stretch) {
     for (int d = 0; d < 3; ++d) {
@@ -80,13 +81,14 @@ private:
   const Region &region_;
   const DomainShape &grid_;
   const PlacedConvex &body_;
-  Style style_;
+  LatticeStyle style_;
   double stretch_;
   std::vector<double> x_[3];
   double step_ = 0;  // along rows
 };
 
-// How much wider than needed a lattice of boxes may be to have about four times `enough` sites.
+// Returns the factor, at least 1, by which a lattice of bounding boxes may be widened and still have about four times
+// `enough` sites.
 double stretch_for(const Region &region, const PlacedConvex &body, int dimension, std::size_t enough) {
   double free = region.volume() / std::max(1.0, 4.0 * double(enough));
   for (int d = 0; d < dimension; ++d) free /= 2 * body.half_width(d);
@@ -109,7 +111,7 @@ std::vector<BodyPlace> find_packing(const Region &region, const Crowd &crowd, co
       body.centre[2] = grid.length[2] / 2;
       const double stretch = wide ? stretch_for(region, body, dimension, enough) : 1;
       if (wide && stretch == 1) continue;
-      for (const Style &style : styles(body, dimension))
+      for (const LatticeStyle &style : lattice_styles(body, dimension))
         for (int o = 0; o < offsets[0] * offsets[1] * offsets[2]; ++o) {
           const Int3 offset{o % offsets[0], o / offsets[0] % offsets[1], o / (offsets[0] * offsets[1])};
           sites.clear();

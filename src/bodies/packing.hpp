@@ -1,4 +1,4 @@
-// Regular packings of one species: where the most bodies fit.
+// Regular packings of one species: the lattice sites on which the most bodies fit.
 #pragma once
 
 #include "bodies/crowd.hpp"
@@ -6,9 +6,9 @@
 
 namespace eulastic {
 
-/// Sites for `shape` in the free part of `region`, no two in each other's way: the first packing found with at least
-/// `enough`, else the one with the most. Tried: rows of boxes and staggered rows, with each of `orientations`, in the
-/// lumen of a tube in several positions.
+/// Returns sites for `shape` in the part of `region` that `crowd` leaves free; bodies on them do not overlap. It is the
+/// first packing found with at least `enough` sites, otherwise the one with the most. Packings are rows of bounding
+/// boxes and staggered rows, with each of `orientations` (degrees), and in the lumen of a tube at several offsets.
 std::vector<BodyPlace> find_packing(const Region &region, const Crowd &crowd, const DomainShape &grid,
                                     const ConvexBody &shape, const std::vector<Real3> &orientations,
                                     std::size_t enough);

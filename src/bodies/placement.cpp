@@ -29,7 +29,7 @@ std::string read_list(const SpeciesSpec &spec, int dimension, std::vector<BodyPl
   });
 }
 
-// Why the lumen of a tube is not in the box.
+// Returns why the lumen of a tube is not inside the domain, or an empty string.
 std::string why_no_lumen(const SpeciesSpec &spec, const DomainShape &grid, const Real3 &centre) {
   const double throat = spec.shape == Shape::constricted_tube ? spec.throat_length / 2 : 0;
   for (int d = 0; d < (grid.cells[2] == 1 ? 2 : 3); ++d) {
@@ -41,13 +41,13 @@ std::string why_no_lumen(const SpeciesSpec &spec, const DomainShape &grid, const
   return {};
 }
 
-// Why `place` cannot be in the box.
+// Returns why a body cannot be at `place`, or an empty string.
 std::string why_not(const SpeciesSpec &spec, const Surface &surface, const DomainShape &grid, const BodyPlace &place) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
-  if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "turns only about z in 2-D";
+  if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "rotates only about z in 2-D";
   const bool may_cross = spec.shape == Shape::cylinder || is_attached(spec.shape);
   if (may_cross && place.orientation != Real3{})
-    return "cannot be turned: cylinders, slabs and tubes take an axis, no orientation";
+    return "cannot be rotated: cylinders, slabs and tubes have an axis instead of an orientation";
   if (is_tube(spec.shape)) return why_no_lumen(spec, grid, place.centre);
   for (int d = 0; d < dimension; ++d) {
     const double centre = place.centre[d], length = grid.length[d], bound = surface.bounding_radius();
@@ -66,7 +66,7 @@ std::string why_not(const SpeciesSpec &spec, const Surface &surface, const Domai
   return {};
 }
 
-// Takes the bodies of a species as they come.
+// Checks and stores the bodies of a species in order.
 class Placing {
 public:
   Placing(const SpeciesSpec &spec, const DomainShape &grid, const KeptBodies &kept, Places *places)
@@ -77,7 +77,7 @@ public:
     own_ = BodyRange::of(count, kept_.rank, kept_.ranks);
     places_.known.reserve(own_.size());
   }
-  /// The next body; what is wrong with it.
+  /// Adds the next body; returns an error, or an empty string.
   std::string add(BodyPlace place) {
     const int index = next_++;
     if (grid_.cells[2] == 1) place.centre[2] = grid_.length[2] / 2;
@@ -101,7 +101,7 @@ private:
   int next_ = 0;
 };
 
-// Rank 0 tells the others piece by piece.
+// Rank 0 reads the list and broadcasts it in pieces.
 std::string place_list(const SpeciesSpec &spec, int dimension, Placing *placing) {
   std::vector<BodyPlace> all, piece;
   if (std::string wrong = on_rank_0([&] { return read_list(spec, dimension, &all); }); !wrong.empty()) return wrong;

@@ -1,4 +1,4 @@
-// Random numbers that depend on the seed alone: the same on every rank.
+// Random numbers that depend on the seed only, so that all ranks draw the same.
 #pragma once
 
 #include "grid/box.hpp"
@@ -9,22 +9,22 @@
 
 namespace eulastic {
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
+/// SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
 class Random {
 public:
-  /// Species of one seed have streams of their own.
+  /// Different names have independent streams for the same seed.
   Random(long seed, const std::string &name) : state_(static_cast<std::uint64_t>(seed)) {
     for (const char c : name) state_ = mix(state_ + static_cast<unsigned char>(c));
   }
 
   std::uint64_t bits() noexcept { return mix(state_ += 0x9e3779b97f4a7c15u); }
-  /// In [low, high).
+  /// Uniform in [low, high).
   double between(double low, double high) noexcept {
     return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
   }
-  /// 0 ... n - 1, n > 0.
+  /// Uniform in 0 ... n - 1; n > 0.
   std::uint64_t below(std::uint64_t n) noexcept { return bits() % n; }
-  /// Angles about x, then y, then z in degrees, uniform over all orientations; in 2-D about z.
+  /// Angles about x, then y, then z in degrees, uniform over all orientations; in 2-D about z only.
   Real3 orientation(int dimension) noexcept {
     const double z = between(-180, 180);
     if (dimension == 2) return {0, 0, z};

@@ -11,9 +11,9 @@ Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<Places
       dimension_(grid.cells[2] == 1 ? 2 : 3),
       vessel_(vessel),
       solids_(solids),
-      margin_(margin * (1 - 1e-9)),  // round-off of what lies on the boundary
+      margin_(margin * (1 - 1e-9)),  // bodies exactly at the margin count as inside despite round-off
       high_(grid.length) {
-  cylinder_shapes_.reserve(species.size());  // bodies point into it
+  cylinder_shapes_.reserve(species.size());  // bodies keep pointers to its elements
   for (int d = 0; d < dimension_; ++d) volume_ *= grid.length[d];
   volume_ -= solids.volume;
   for (std::size_t s = 0; s < species.size(); ++s) {
@@ -60,8 +60,8 @@ bool Region::holds(const PlacedConvex &body) const {
   return (!vessel_ || in_lumen(body)) && clear_of_slabs(body) && clear_of_cylinders(body);
 }
 
-// The support of body and lumen are compared in many directions across the axis. Where the lumen narrows, it is taken
-// as wide as at the body's end towards the throat.
+// Compares the support functions of body and lumen in many directions across the axis. Where the lumen narrows, its
+// radius at the body's end towards the throat is used.
 bool Region::in_lumen(const PlacedConvex &body) const {
   constexpr int directions = 64;
   const double along = body.centre[vessel_->axis] - vessel_->centre[vessel_->axis];
@@ -73,13 +73,13 @@ bool Region::in_lumen(const PlacedConvex &body) const {
   const double distance = std::hypot(r[a], r[b]);
   if (distance + body.body->outer_radius() <= radius) return true;
   if (distance + body.body->inner_radius() > radius) return false;
-  radius *= std::cos(3.14159265358979323846 / directions);  // between two directions
+  radius *= std::cos(3.14159265358979323846 / directions);  // covers normals between two directions
   for (int s = 0; s < directions; ++s) {
     const double angle = 2 * 3.14159265358979323846 * s / directions;
     Real3 n{};
     n[a] = std::cos(angle);
     n[b] = std::sin(angle);
-    if (dimension_ == 2 && vessel_->axis != 2) {  // a channel: up and down
+    if (dimension_ == 2 && vessel_->axis != 2) {  // a channel has two walls
       n = {};
       n[1 - vessel_->axis] = s % 2 ? 1 : -1;
     }

@@ -1,4 +1,5 @@
-// Where bodies may be: the box less slabs, or the lumen of a tube; both without the cells of bodies from files.
+// The region in which bodies may be placed: the domain without slabs, or the lumen of a tube; in both cases without the
+// cells of bodies from files.
 #pragma once
 
 #include "bodies/convex.hpp"
@@ -11,18 +12,19 @@ namespace eulastic {
 
 class Region {
 public:
-  /// All slabs of `species` and the cylinders among those with `places`. `vessel`: one of the tubes, or null. All must
-  /// stay. `margin`: what bodies keep free beside sides of the box, slabs and the lumen's wall.
+  /// Excludes all slabs of `species` and the cylinders of the species that have `places`. `vessel`: a tube, or null.
+  /// The arguments must outlive the region. `margin`: distance that bodies keep from boundaries, slabs and the lumen's
+  /// wall.
   Region(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const SpeciesSpec *vessel,
          const SolidBodies &solids, const DomainShape &grid, double margin);
 
-  /// Volume (area in 2-D) of the lumen, or of the box less slabs; less bodies from files.
+  /// Volume (area in 2-D) of the lumen, or of the domain without slabs; without bodies from files.
   double volume() const { return volume_; }
-  /// The box around it, and whether it ends at the sides of the box of the grid rather than at a round wall.
+  /// Bounding box, and whether the region ends along d at a round wall rather than at a boundary.
   double low(int d) const { return low_[d]; }
   double high(int d) const { return high_[d]; }
   bool is_round(int d) const { return vessel_ && d != vessel_->axis; }
-  /// Whether a body with its centre in the box is inside and clear of walls, slabs and cylinders.
+  /// Whether a body whose centre is in the domain lies inside, without touching walls, slabs and cylinders.
   bool holds(const PlacedConvex &body) const;
 
 private:

@@ -9,14 +9,14 @@
 namespace eulastic {
 namespace {
 
-constexpr double densest = 0.7;   // part of the region; crowds above it are not tried
-constexpr double skin = 0.01;     // inner radii by which bodies are larger while they move
-constexpr double finer = 1.02;    // ratio of the sizes for which a packing is sought
-constexpr double growth = 1.005;  // ratio of the sizes before and after a step of growth
-constexpr int melting = 100;      // rounds before bodies grow
-constexpr int patience = 400;     // rounds at full size in which the overlap has to fall by a quarter
-constexpr int tries = 6;          // of a body that overlaps others, in one round
-constexpr int inward_tries = 40;  // of a body that has grown out of the region
+constexpr double densest = 0.7;   // largest volume fraction of the region that is tried
+constexpr double skin = 0.01;     // margin around bodies while they move, in inner radii
+constexpr double finer = 1.02;    // ratio of successive sizes for which a packing is sought
+constexpr double growth = 1.005;  // growth of the size in one step
+constexpr int melting = 100;      // rounds of random moves before bodies grow
+constexpr int patience = 400;     // rounds at full size within which the overlap must fall by a quarter
+constexpr int tries = 6;          // trial moves of an overlapping body in one round
+constexpr int inward_tries = 40;  // trial moves of a body that has grown out of the region
 constexpr double least_moves = 4e6, moves_of_body = 1500, most_moves = 2e7;
 constexpr double pi = 3.14159265358979323846;
 
@@ -25,7 +25,7 @@ Real3 cross(const Real3 &a, const Real3 &b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// The sum of the squares of the depths, so that bodies share an overlap.
+// Returns the sum of the squared penetration depths; squares make bodies share an overlap evenly.
 double overlap(const std::vector<Penetration> &contacts) {
   double sum = 0;
   for (const Penetration &contact : contacts) sum += contact.depth * contact.depth;
@@ -64,14 +64,14 @@ public:
 private:
   struct Round {
     double overlap = 0, deepest = 0;
-    std::size_t outside = 0;  ///< of the region
+    std::size_t outside = 0;  ///< number of bodies outside the region
   };
 
   PlacedConvex convex(const BodyPlace &place, const ConvexBody &shape) const {
     return {&shape, place.centre, rotation(place.orientation)};
   }
 
-  // The volume of a body with its gap, estimated from its widths.
+  // Estimates the volume of a body with its gap from its widths.
   double volume() const {
     const ConvexBody bare(spec_, dimension_, 0);
     double volume = shape_volume(spec_, dimension_);
@@ -79,8 +79,8 @@ private:
     return volume;
   }
 
-  // Places the bodies on random sites of the packing of the largest bodies of which enough fit, smaller than those by
-  // the factor `looser`. Returns whether there is such a packing.
+  // Finds the largest size at which a regular packing has enough sites, and places the bodies on random sites of it,
+  // smaller by the factor `looser`. Returns whether there is such a packing.
   bool begin(double looser) {
     std::vector<BodyPlace> sites;
     double widest = wide_.outer_radius();
@@ -103,8 +103,7 @@ private:
     return true;
   }
 
-  // Lets the bodies grow to their size; returns whether all are clear. They wait at most `most_waiting` rounds at a
-  // size.
+  // Grows the bodies to full size with at most `most_waiting` rounds at each size, and returns whether none overlap.
   bool grow(int most_waiting, double most) {
     double before = HUGE_VAL;
     for (int round = 0, waited = 0; moved_ < most; ++round, ++waited) {
@@ -140,7 +139,7 @@ private:
     return place;
   }
 
-  // Moves a body away from those that it overlaps, and turns it as they push it.
+  // Moves a body away from those that it overlaps and turns it by the torque of the contacts.
   BodyPlace pushed(const BodyPlace &place, const std::vector<Penetration> &contacts, double part) const {
     const double inertia = 0.3 * shape_.outer_radius() * shape_.outer_radius();
     Real3 step{}, turn{};
@@ -167,12 +166,12 @@ private:
   std::vector<Penetration> contacts_of(std::size_t b) const {
     return crowd_.penetrations(crowd_[others_.size() + b], others_.size() + b);
   }
-  // Gives all bodies a shape.
-  void take(const ConvexBody &shape) {
+  // Sets the shape of all bodies.
+  void set_shape(const ConvexBody &shape) {
     for (std::size_t b = 0; b < places_.size(); ++b) crowd_.move(others_.size() + b, convex(places_[b], shape));
   }
 
-  // Moves a body to a place in the region where it overlaps less than `*most`, or as little as before.
+  // Moves body b to `to` if that lies in the region and the overlap there is below `*most`, or is 0; updates `*most`.
   bool move(std::size_t b, const BodyPlace &to, double *most) {
     const PlacedConvex body = convex(to, now_);
     ++moved_;
@@ -209,18 +208,18 @@ private:
   }
 
   bool is_clear() {
-    take(shape_);
+    set_shape(shape_);
     bool clear = true;
     for (std::size_t b = 0; b < places_.size() && clear; ++b) clear = contacts_of(b).empty();
-    if (!clear) take(now_);
+    if (!clear) set_shape(now_);
     return clear;
   }
 
-  // Counts the bodies that are left when those outside and then those that overlap most others are taken away.
+  // Counts the bodies that remain after those outside the region, and then those with the most overlaps, are removed.
   std::size_t clear_ones() {
     std::vector<std::vector<Penetration>> contacts(places_.size());
     std::vector<bool> gone(places_.size());
-    take(shape_);
+    set_shape(shape_);
     for (std::size_t b = 0; b < places_.size(); ++b) {
       contacts[b] = contacts_of(b);
       gone[b] = !region_.holds(crowd_[others_.size() + b]);
@@ -247,8 +246,8 @@ private:
   const Crowd &others_;
   const std::vector<Real3> &orientations_;
   std::size_t count_;
-  ConvexBody shape_, wide_, now_;  ///< the body; with the skin; what it has grown to
-  Crowd crowd_;                    ///< points to these
+  ConvexBody shape_, wide_, now_;  ///< full size; full size with the skin; present size
+  Crowd crowd_;                    ///< refers to the three shapes
   Random random_;
   std::vector<BodyPlace> places_;
   double scale_ = 1, moved_ = 0;

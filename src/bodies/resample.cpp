@@ -10,21 +10,22 @@
 namespace eulastic {
 namespace {
 
-constexpr int most_voxels = 1 << 18;  // in one piece
+constexpr int most_voxels = 1 << 18;  // read in one piece
 
 struct Overlap {
-  int cell;       // of the window
-  double weight;  // part of the cell
+  int cell;       // index in the window
+  double weight;  // fraction of the cell
 };
 
-// What the voxels of one direction share with the cells of the window.
+// Overlaps of voxels with the cells of the window along one direction.
 struct Overlaps {
-  int begin = 0, end = 0;             // voxels
-  std::vector<std::size_t> start{0};  // of voxel begin + n in `list`
+  int begin = 0, end = 0;             // range of voxels
+  std::vector<std::size_t> start{0};  // start[n]: first entry of voxel begin + n in `list`
   std::vector<Overlap> list;
 };
 
-// Begin of voxel i in cells from the low side of the box; on a cell face exactly if it is there up to round-off.
+// Returns the low edge of voxel i, in cells from the low boundary; it is exactly on a cell face if it is there up to
+// round-off.
 double edge(const VoxelBox &box, double h, int d, int i) {
   const double x = box.corner[d] + double(i) * box.spacing[d], e = x / h, face = std::round(e);
   const double size = (std::abs(box.corner[d]) + double(i) * box.spacing[d]) / h + 1;
@@ -34,7 +35,7 @@ double edge(const VoxelBox &box, double h, int d, int i) {
 Overlaps find_overlaps(const CellWindow &window, const VoxelBox &box, int d) {
   const double h = window.spacing(d);
   const int first = window.begin[d], last = first + window.size[d];
-  // The voxel around a place, a little too low, within the volume.
+  // Returns the voxel that contains a cell face, or one before it, within the volume.
   const auto voxel_at = [&](int cell) {
     const double i = std::floor((cell * h - box.corner[d]) / box.spacing[d]) - 1;
     return static_cast<int>(std::clamp(i, 0.0, double(box.count[d])));
@@ -62,7 +63,7 @@ void for_overlaps(const Overlaps &overlaps, int voxel, Visit visit) {
   for (std::size_t o = overlaps.start[n]; o < overlaps.start[n + 1]; ++o) visit(overlaps.list[o]);
 }
 
-// The box of voxels that the cells of any rank overlap.
+// Returns the box of voxels [first, last) that overlap cells of any rank.
 std::pair<Int3, Int3> voxels_of_all(const Overlaps &x, const Overlaps &y, const Overlaps &z) {
   std::array<int, 6> bounds{x.begin, y.begin, z.begin, -x.end, -y.end, -z.end};
   if (x.begin == x.end || y.begin == y.end || z.begin == z.end) bounds.fill(std::numeric_limits<int>::max());

@@ -12,17 +12,17 @@ namespace eulastic {
 namespace {
 
 constexpr double degrees = 180 / 3.14159265358979323846;
-constexpr int least_rounds = 12, most_rounds = 2000;  // tries of each body to go somewhere else
+constexpr int least_rounds = 12, most_rounds = 2000;  // trial moves of each body
 constexpr int least_rounds_of_copies = 2;
-constexpr std::size_t all_tries = 1000000;  // as many rounds as these allow
-constexpr int insertions = 2000;            // tries of each body that the packing has no site for
-constexpr std::size_t most_single = 20000;  // more bodies begin as copies of a block
+constexpr std::size_t all_tries = 1000000;  // trial moves of all bodies together, which limit the rounds
+constexpr int insertions = 2000;            // random insertions tried for a body without a site
+constexpr std::size_t most_single = 20000;  // above this number bodies start as copies of a periodic block
 constexpr double block_bodies = 3000;
 constexpr double small_turn = 25;   // degrees
-constexpr double small_step = 0.3;  // of the smallest radius
+constexpr double small_step = 0.3;  // in inner radii
 constexpr std::size_t nobody = static_cast<std::size_t>(-1);
 
-// Angles about x, y, z of a rotation; inverse of rotation().
+// Returns the angles about x, y, z of a rotation, in degrees; the inverse of rotation().
 Real3 angles(const Rotation &q) {
   return {std::atan2(q[2][1], q[2][2]) * degrees, std::asin(std::clamp(-q[2][0], -1.0, 1.0)) * degrees,
           std::atan2(q[1][0], q[0][0]) * degrees};
@@ -35,14 +35,14 @@ Rotation product(const Rotation &p, const Rotation &q) {
   return r;
 }
 
-// Those with which regular packings are tried.
+// Returns the orientations with which regular packings are tried, in degrees.
 std::vector<Real3> orientations(const SpeciesSpec &spec, int dimension) {
   if (!spec.random_orientation) return {spec.orientation};
   if (dimension == 2) return {{}, {0, 0, 90}};
   return {{}, {90, 0, 0}, {0, 0, 90}, {0, 90, 0}};
 }
 
-// As seed_bodies(); `dense`: what does not fit at random is relaxed.
+// As seed_bodies(); `dense`: bodies that do not fit at random are relaxed.
 std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
                  const SolidBodies &solids, const std::vector<Places> &earlier, bool dense,
                  std::vector<BodyPlace> *places);
@@ -59,7 +59,7 @@ public:
         random_(spec.seed, spec.name),
         first_(crowd->size()) {}
 
-  /// Returns how many of `count` it has placed.
+  /// Places up to `count` bodies and returns their number.
   std::size_t place(std::size_t count, std::vector<BodyPlace> *places) {
     std::vector<BodyPlace> sites;
     if (count > most_single) sites = repeat_block(count);
@@ -69,7 +69,7 @@ public:
     places->clear();
     places->reserve(count);
     for (std::size_t s = 0; s < sites.size() && places->size() < count;
-         ++s) {  // in order: neighbours stay near in memory
+         ++s) {  // in order, so that neighbours stay close in memory
       if (random_.below(sites.size() - s) >= count - places->size()) continue;
       places->push_back(sites[s]);
       crowd_.add(convex(sites[s]));
@@ -113,8 +113,8 @@ private:
     return place;
   }
 
-  // A periodic block of the box, seeded by itself, again and again: sites that are at random already. Empty if no block
-  // has enough.
+  // Seeds a periodic block of the domain and repeats it: these sites are random already. Returns none if the block has
+  // too few.
   std::vector<BodyPlace> repeat_block(std::size_t count) const {
     const double share = std::min(1.0, block_bodies / double(count)), least = 6 * shape_.outer_radius();
     const double side = std::pow(share * region_.volume(), 1.0 / dimension_);
@@ -128,10 +128,10 @@ private:
       volume *= block.length[d];
     }
     SpeciesSpec spec = spec_;
-    spec.name += " block";  // random numbers of its own
+    spec.name += " block";  // its own stream of random numbers
     spec.inside.clear();
     std::vector<BodyPlace> places, sites;
-    for (const double more : {1.15, 1.05}) {  // some are in the way of walls and earlier species
+    for (const double more : {1.15, 1.05}) {  // some copies overlap walls and earlier species
       spec.number = static_cast<long>(std::ceil(more * double(count) * volume / region_.volume()));
       if (!seed({spec}, 0, block, {}, {}, false, &places).empty()) continue;
       sites.clear();
@@ -147,14 +147,15 @@ private:
     return {};
   }
 
-  // Of copies of a block, which are at random, a part is missing by now; small moves take the rest of the likeness.
+  // Moves bodies at random. Copies of a block are random already, and some were left out: small moves remove the rest
+  // of their likeness.
   void shuffle(bool copies, std::vector<BodyPlace> *places) {
     std::vector<bool> far(places->size());
     std::size_t moved = places->size();
     const int least = copies ? least_rounds_of_copies : least_rounds;
     const int rounds = std::clamp(static_cast<int>(all_tries / (places->size() + 1)), least, most_rounds);
     for (int round = 0; round < rounds; ++round) {
-      const bool try_far = rounds > least || (!copies && moved > places->size() / 50);  // else not worth the time
+      const bool try_far = rounds > least || (!copies && moved > places->size() / 50);  // otherwise it rarely succeeds
       moved = 0;
       for (std::size_t b = 0; b < places->size(); ++b) {
         if (far[b]) continue;
@@ -175,10 +176,10 @@ private:
   Crowd &crowd_;
   const ConvexBody &shape_;
   Random random_;
-  std::size_t first_;  // in the crowd
+  std::size_t first_;  // index of this species' first body in the crowd
 };
 
-// Bodies with ends, in bins; infinite ones are in the region.
+// Whether bodies of this shape are finite and go into bins; infinite ones are part of the region.
 bool is_finite(Shape shape) { return shape == Shape::sphere || shape == Shape::ellipsoid || shape == Shape::biconcave; }
 
 std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t placed, double hematocrit) {
@@ -198,7 +199,7 @@ std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, con
   const SpeciesSpec *vessel = nullptr;
   bool found = spec.inside.empty();
   for (const SpeciesSpec &other : species) {
-    found = found || (other.shape == Shape::voxels && spec.inside == other.name);  // everybody keeps out of its wall
+    found = found || (other.shape == Shape::voxels && spec.inside == other.name);  // all bodies avoid its wall
     if (!is_tube(other.shape) || !(spec.inside.empty() || spec.inside == other.name)) continue;
     if (vessel) return "-" + spec.name + "_inside: must name one of the tubes";
     vessel = &other;
@@ -209,12 +210,12 @@ std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, con
   const double body = shape_volume(spec, dimension);
   const double wanted = spec.number >= 0 ? double(spec.number) : std::round(spec.hematocrit * region.volume() / body);
   if (!(wanted <= most_bodies))
-    return "-" + spec.name + (spec.number >= 0 ? "_count" : "_hematocrit") +
-           ": more bodies than can be counted; accepted: at most " + std::to_string(most_bodies) + " bodies";
+    return "-" + spec.name + (spec.number >= 0 ? "_count" : "_hematocrit") + ": too many bodies; accepted: at most " +
+           std::to_string(most_bodies) + " bodies";
   const std::size_t count = static_cast<std::size_t>(wanted);
 
   std::vector<ConvexBody> shapes;
-  shapes.reserve(which + 1);  // bodies point into it
+  shapes.reserve(which + 1);  // bodies keep pointers to its elements
   std::size_t all = count;
   double widest = 0;
   for (std::size_t s = 0; s <= which; ++s) {

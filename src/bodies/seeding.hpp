@@ -1,8 +1,8 @@
-// Random bodies without overlap, for a number or a hematocrit.
+// Random placement of bodies without overlap, for a given number or hematocrit.
 //
-// They start on random sites of a regular packing, which is what makes high hematocrits possible, then move at random
-// (hard-body Monte Carlo): anywhere if there is room, else by steps. What the packing cannot hold is tried at random;
-// if it does not fit so, all are relaxed (bodies/relaxation.hpp).
+// Bodies start on random sites of a regular packing, which makes high hematocrits possible, and then move at random
+// (hard-body Monte Carlo): to any free position, or else by small steps. Bodies for which the packing has no site are
+// inserted at random; if that fails, all bodies are relaxed (bodies/relaxation.hpp).
 #pragma once
 
 #include "bodies/placement.hpp"
@@ -10,10 +10,10 @@
 
 namespace eulastic {
 
-/// Places species[which], clear of walls, slabs, tubes, cylinders, `solids` and of the bodies of `earlier` (those of
-/// the species before, all known); membranes by a cell at least, which the film beside walls takes. Depends on nothing
-/// but the arguments: every rank finds the same. Returns an empty string, or one sentence on what is wrong; where they
-/// do not fit, with how many could be placed.
+/// Places the bodies of species[which] without overlap with walls, slabs, tubes, cylinders, `solids` and the bodies of
+/// `earlier` (the species before it, all known). Membranes keep at least one cell from walls, for the film beside them.
+/// The result depends on the arguments alone and is the same on all ranks. Returns an empty string, or one sentence on
+/// the error; if the bodies do not fit, it says how many could be placed.
 std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
                         const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places);
 

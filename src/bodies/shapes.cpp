@@ -10,12 +10,13 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Real3 red_cell{red_cell_waist, 2.002558, -1.122762};
-// Bound of |d/dq [(1-q) P(q)^2]| on 0 <= q <= 1, P the polynomial above; beyond, level() is linear in q.
+// Upper bound of |d/dq [(1-q) P(q)^2]| for 0 <= q <= 1, with P(q) = red_cell[0] + q (red_cell[1] + q red_cell[2]); for
+// q > 1 level() is linear in q.
 constexpr double red_cell_slope = 1.23;
 
 double profile(double q) noexcept { return red_cell[0] + q * (red_cell[1] + q * red_cell[2]); }
 
-// R minus the radius of the lumen at distance s from the throat.
+// Returns R minus the lumen's radius at distance s from the throat.
 double narrowing(double depth, double throat, double s) noexcept {
   return depth > 0 && 2 * std::abs(s) < throat ? depth * (1 + std::cos(2 * pi * s / throat)) / 2 : 0;
 }
@@ -56,7 +57,7 @@ Real3 turned(const Real3 &degrees, const Real3 &angle) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) R[a][b] = by[a][0] * start[0][b] + by[a][1] * start[1][b] + by[a][2] * start[2][b];
   const double across = std::hypot(R[0][0], R[1][0]);
-  if (across < 1e-9)  // x and z turn about the same line
+  if (across < 1e-9)  // gimbal lock: x and z rotate about the same line
     return {std::atan2(-R[1][2], R[1][1]) * (180 / pi), R[2][0] > 0 ? -90.0 : 90.0, 0};
   return {std::atan2(R[2][1], R[2][2]) * (180 / pi), std::atan2(-R[2][0], across) * (180 / pi),
           std::atan2(R[1][0], R[0][0]) * (180 / pi)};
@@ -182,7 +183,7 @@ double lumen_resistance(const SpeciesSpec &spec, const DomainShape &grid) {
   const auto inverse = [flat](double r) { return flat ? 1.5 / (r * r * r) : 8 / (pi * r * r * r * r); };
   const double length = grid.length[spec.axis];
   if (spec.shape != Shape::constricted_tube) return length * inverse(spec.radius);
-  constexpr int pieces = 256;  // of the throat, over one period: the midpoint rule is exact to round-off
+  constexpr int pieces = 256;  // over one period of the throat the midpoint rule is exact to round-off
   double sum = 0;
   for (int n = 0; n < pieces; ++n) sum += inverse(lumen_radius(spec, spec.throat_length * ((n + 0.5) / pieces - 0.5)));
   return (length - spec.throat_length) * inverse(spec.radius) + spec.throat_length * (sum / pieces);

@@ -44,9 +44,9 @@ bool SolidMask::touches(const PlacedConvex &body) const {
     for (int j = begin[1]; j < end[1]; ++j) {
       Real3 centre{0, (j + 0.5) * spacing_[1], (k + 0.5) * spacing_[2]};
       if (dimension_ == 2) centre[2] = body.centre[2];
-      for (int i = begin[0]; i < end[0];) {  // pieces between periodic sides
+      for (int i = begin[0]; i < end[0];) {  // one piece per periodic image
         const int first = wrapped(i, 0), last = std::min(grid_.cells[0], first + end[0] - i);
-        centre[0] = (i - first + 0.5) * spacing_[0];  // of cell 0 in this image
+        centre[0] = (i - first + 0.5) * spacing_[0];  // centre of cell 0 of this image
         if (row_touches(body, wrapped(j, 1), wrapped(k, 2), centre, first, last)) return true;
         i += last - first;
       }
@@ -59,7 +59,7 @@ bool SolidMask::row_touches(const PlacedConvex &body, int j, int k, const Real3 
   const double near = body.body->inner_radius() + cell_.inner_radius();
   for (int i = begin; i < end; ++i) {
     const std::uint64_t rest = bits_[word(i, j, k)] >> (i % 64);
-    if (rest == 0) i |= 63;  // nothing up to the end of the word
+    if (rest == 0) i |= 63;  // no bit up to the end of the word
     if ((rest & 1) == 0) continue;
     const PlacedConvex cell{&cell_, {centre[0] + i * spacing_[0], centre[1], centre[2]}, rotation({})};
     double square = 0;

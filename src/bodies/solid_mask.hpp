@@ -1,4 +1,4 @@
-// The cells that a body from a file takes, all of the box at once: bodies at random keep out of them.
+// The cells of the whole domain that a body from a file occupies, for the random placement of others outside of it.
 #pragma once
 
 #include "bodies/convex.hpp"
@@ -12,12 +12,12 @@ namespace eulastic {
 
 class SolidMask {
 public:
-  /// One bit per cell, none set.
+  /// Allocates one bit per cell, all 0.
   explicit SolidMask(const DomainShape &grid);
 
-  /// Sets those of `window` where `fraction` is not 0.
+  /// Sets the bits of the cells of `window` in which `fraction` is not 0.
   void add(const CellWindow &window, ConstView fraction);
-  /// Whether any of the cells that are set touches `body`, whose centre is in the box. If not, no cell holds a part of
+  /// Returns whether any marked cell touches `body`, whose centre is in the domain. If not, no cell contains parts of
   /// both.
   bool touches(const PlacedConvex &body) const;
 
@@ -27,15 +27,15 @@ private:
 
   DomainShape grid_;
   int dimension_;
-  std::size_t words_;  // of a row
+  std::size_t words_;  // 64-bit words per row
   Real3 spacing_{};
   std::vector<std::uint64_t> bits_;
   ConvexBody cell_;
 };
 
-/// All bodies from files, and what stays free of bodies beside the sides of the box.
+/// All bodies from files, and the strips beside the boundaries that stay free of bodies.
 struct SolidBodies {
-  double volume = 0;  ///< in the box; area in 2-D
+  double volume = 0;  ///< inside the domain; area in 2-D
   std::vector<SolidMask> masks;
   std::array<std::array<double, 2>, 3> free{};  ///< [direction][low, high]: widths
 };

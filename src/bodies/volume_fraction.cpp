@@ -81,7 +81,8 @@ Real3 PlacedBody::body_coordinates(const Real3 &r) const noexcept {
           q[0][2] * x + q[1][2] * y + q[2][2] * z};
 }
 
-// Part of the piece of depth `depth` around r (in cells from the body) that is inside, in units of 2^-fraction_bits.
+// Returns the volume inside the body of the piece of depth `depth` around r (in cells from the body), in units of
+// 2^-fraction_bits.
 std::int64_t PlacedBody::inside(const Real3 &r, int depth) const noexcept {
   const std::int64_t full = std::int64_t{1} << (fraction_bits - dimension_ * depth);
   const Real3 y = body_coordinates(r);
@@ -109,7 +110,7 @@ std::int64_t PlacedBody::inside(const Real3 &r, int depth) const noexcept {
   return std::llround(half_space_fraction(mean, slopes) * static_cast<double>(full));
 }
 
-// The middle of a cell, in cells from that of the body.
+// Returns the centre of a cell relative to that of the body, in cells.
 Real3 PlacedBody::from_body(const Int3 &cell) const noexcept {
   Real3 r{};
   for (int d = 0; d < dimension_; ++d) r[d] = (cell[d] + 0.5 - 0.5 * cells_[d]) - middle_[d];
@@ -131,7 +132,7 @@ double PlacedBody::fraction(const Int3 &cell) const noexcept {
   return std::ldexp(static_cast<double>(inside(from_body(cell), 0)), -fraction_bits);
 }
 
-// Exact fractions of the cells of a box around it.
+// Sums the fractions of the cells of a box around the body.
 RigidMass moments(const Surface &surface, int dimension) {
   constexpr int cells = 96;
   DomainShape box;

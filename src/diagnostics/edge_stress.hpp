@@ -1,4 +1,4 @@
-// The elastic stress of a phase at one place, as the momentum equation sees it.
+// The stress at one point in the form of the momentum equation: that of one phase, and the whole stress.
 #pragma once
 
 #include "field/law.hpp"
@@ -11,7 +11,7 @@
 
 namespace eulastic {
 
-/// Pointers to the components of B of one cell, in their order; 2-D has three.
+/// Pointers to the components of B of one cell, in the order of the field. In 2-D the last pointers repeat the third.
 struct CellTensor {
   CellTensor(const Field &tensor, int i, int j, int k) {
     for (int c = 0; c < 6; ++c) component[c] = &tensor[std::min(c, tensor.count() - 1)](i, j, k);
@@ -19,7 +19,8 @@ struct CellTensor {
   const double *component[6];
 };
 
-/// sigma_ab on the low edge of cell (i, j, k) normal to the directions a and b. One ghost layer of phi and B.
+/// sigma_ab of a phase on the low edge of cell (i, j, k) normal to the directions a and b. Reads one ghost of phi and
+/// B.
 inline double edge_stress(const Box &box, const Phase &phase, int a, int b, int i, int j, int k) {
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
@@ -39,7 +40,8 @@ inline double edge_stress(const Box &box, const Phase &phase, int a, int b, int 
   return box.dimension() == 2 ? stress(std::integral_constant<int, 2>{}) : stress(std::integral_constant<int, 3>{});
 }
 
-/// sigma_aa at the centre of cell (i, j, k), without its mean over the directions. B of its edges too.
+/// sigma_aa of a phase at the centre of cell (i, j, k), without its isotropic part. Reads B on the edges of the cell
+/// too.
 inline double centre_stress(int dimension, const Phase &phase, int a, int i, int j, int k) {
   const ConstView phi = phase.fraction[0];
   const std::ptrdiff_t stride[3] = {phi.stride(0), phi.stride(1), phi.stride(2)};
@@ -52,7 +54,7 @@ inline double centre_stress(int dimension, const Phase &phase, int a, int i, int
   });
 }
 
-/// Viscous and elastic stress together, without the pressure. Bodies in boxes of their own are not part of it.
+/// Viscous plus elastic stress without the pressure. Bodies in boxes of their own are not included.
 struct WholeStress {
   EdgeViscosity viscosity;
   const Field &velocity;
@@ -61,6 +63,7 @@ struct WholeStress {
   static bool bears_stress(const Phase &phase, const Int3 &cell) {
     return phase.material.elastic() && !phase.boxed && phase.rows.holds(cell[0], cell[1], cell[2]);
   }
+  /// sigma_aa at the centre of a cell.
   double normal(int a, const Int3 &cell) const {
     const ConstView u = velocity[a];
     const double *v = &u(cell[0], cell[1], cell[2]);
@@ -70,7 +73,7 @@ struct WholeStress {
         sum += centre_stress(viscosity.box.dimension(), phase, a, cell[0], cell[1], cell[2]);
     return sum;
   }
-  /// On the low edge of a cell.
+  /// sigma_ab on the low edge of a cell.
   double shear(int a, int b, const Int3 &cell) const {
     const ConstView u = velocity[a], w = velocity[b];
     const double *ua = &u(cell[0], cell[1], cell[2]), *ub = &w(cell[0], cell[1], cell[2]);

@@ -18,27 +18,27 @@ void EnergyBudget::advance(double time, const EnergyState &state) {
   } else {
     const double half = 0.5 * (time - time_);
     for (int w = 0; w < works; ++w) work_[w] += half * (rate_[w] + rate[w]);
-    // A monotonic rate is between its two values: its integral is that of the trapezoid within half their difference.
+    // The integral of a monotonic rate differs from its trapezoid by at most half the difference of the two values.
     made_.uncertain += half * (std::fabs(rate[0] - rate_[0]) + std::fabs(rate[1] - rate_[1]));
     made_.handled += half * (exchanged_ + exchanged);
   }
   rate_ = rate;
   exchanged_ = exchanged;
   time_ = time;
-  see_made(state.unknown);
+  update_made(state.unknown);
   if (!started_) since_.fill(made_);
   started_ = started_ || !(begins || state.starts);
   compare_made();
 }
 
-void EnergyBudget::see_made(double unknown) {
+void EnergyBudget::update_made(double unknown) {
   least_ = std::min(least_, last_[1]);
   made_.made = -lost();
   made_.held = last_[0] + (last_[1] - least_) + unknown;
 }
 
-// A share x was made since a row s if M = made - uncertain - x handled has grown by more than x times what was held at
-// s: of all rows so far that is largest for the one with the least M + x held.
+// A share x has been generated since row s if M = made - uncertain - x handled has grown since by more than x times the
+// energy held at s. The criterion is strictest for the row with the least M + x held.
 void EnergyBudget::compare_made() {
   made_share_ = 0;
   for (std::size_t n = 0; n < shares.size(); ++n) {
@@ -72,13 +72,13 @@ void EnergyBudget::set_numbers(const std::vector<double> &numbers) {
   for (auto *part : {&rate_, &work_}) std::copy_n(next, works, part->begin()), next += works;
   for (auto *part : {&first_, &last_}) std::copy_n(next, energies, part->begin()), next += energies;
   exchanged_ = std::fabs(rate_[0]);
-  see_made(0);
+  update_made(0);
   since_.fill(made_);
   started_ = time_ >= 0;
 }
 
 std::vector<double> EnergyBudget::made_numbers() const {
-  // Of made_ without what is held, which the next row computes again.
+  // made_.held is left out, because the next row computes it again.
   std::vector<double> all{made_share_, made_share_max_, started_ ? 1.0 : 0.0, exchanged_,
                           made_.made,  made_.uncertain, made_.handled,        least_};
   for (const Made &m : since_) all.insert(all.end(), {m.made, m.uncertain, m.handled, m.held});
@@ -92,7 +92,7 @@ void EnergyBudget::set_made_numbers(const std::vector<double> &numbers) {
   started_ = *next++ != 0;
   exchanged_ = *next++;
   for (double *value : {&made_.made, &made_.uncertain, &made_.handled, &least_}) *value = *next++;
-  least_ = std::min(least_, 0.0);  // by its definition, whatever a file holds
+  least_ = std::min(least_, 0.0);  // by definition, even if the file has another value
   for (Made &m : since_)
     for (double *value : {&m.made, &m.uncertain, &m.handled, &m.held}) *value = *next++;
 }

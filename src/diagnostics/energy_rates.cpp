@@ -11,10 +11,10 @@ namespace {
 
 enum Sum { momentum_x, momentum_y, momentum_z, wall_power, elastic_power, extended_power, extended_energy, sums };
 
-// A row of a phase, and v along it.
+// A row of a phase and the velocities along it.
 struct Row {
   const double *phi, *v[3] = {};
-  CellTensor B;  // of its cell 0
+  CellTensor B;  // of cell 0 of the row
   int begin, end;
   std::ptrdiff_t stride[3];
   const Material &material;
@@ -31,7 +31,7 @@ struct Row {
   }
 };
 
-// out = phi density(i), 0 where there is no solid.
+// out = phi density(i), 0 in cells without solid.
 template <class Density>
 EULASTIC_INLINE void times_fraction(const double *phi, int begin, int end, double *out, Density density) {
 #pragma omp simd
@@ -52,13 +52,13 @@ EULASTIC_INLINE void energy_row(const Row &row, double *out) {
 EULASTIC_CLONES void energy_2d(const Row &row, double *out) { energy_row<2>(row, out); }
 EULASTIC_CLONES void energy_3d(const Row &row, double *out) { energy_row<3>(row, out); }
 
-// phi sigma_e : grad v, by runs of vectors that hold any solid.
+// Computes phi sigma_e : grad v, processing consecutive vectors that contain solid together.
 template <int Dim, class Law, class Viscosity>
 EULASTIC_INLINE void power_row(const Row &row, const double *inverse, const Law &law, const Viscosity &viscosity,
                                double *out) {
   constexpr int width = 8;
   std::fill(out + row.begin, out + row.end, 0.0);
-  int run = row.begin;  // where the one begins that has come so far
+  int run = row.begin;  // start of the present run of vectors
   for (int begin = row.begin; begin < row.end; begin += width) {
     const int end = std::min(begin + width, row.end);
     bool any = false;
@@ -95,14 +95,15 @@ void stress_power(const Box &box, const Phase &phase, const Field &velocity, con
   (box.dimension() == 2 ? power_2d : power_3d)(at, inverse, out);
 }
 
-// Speed times traction of every tangential face beside a moving wall.
+// Power of moving walls: speed times traction of every tangential face beside them.
 class WallPower {
 public:
-  /// Of the solids alone where `viscosity` is null.
+  /// The walls act on solids alone if `viscosity` is null.
   WallPower(const Box &box, const Field &velocity, const std::vector<const Phase *> &phases,
             const EdgeViscosity *viscosity)
       : box_(box), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
 
+  /// Adds the power of the low or high wall normal to d, which moves with `speed`.
   void add(int d, bool high, const Real3 &speed, ExactSums *sums) const {
     for (int c = 0; c < box_.dimension(); ++c)
       if (c != d && speed[c] != 0) add(d, high, c, speed[c], sums);
@@ -113,8 +114,8 @@ private:
     Int3 begin{}, end = box_.cells();
     begin[d] = high ? end[d] - 1 : 0;
     end[d] = begin[d] + 1;
-    // A face on another wall does not move: no shear of the fluid, but solids have the stress of the edge, whose
-    // control volume is half of that of others.
+    // A face on another wall does not move, so that the fluid has no shear there. Solids have the stress of the edge,
+    // whose control volume is half of that of other edges.
     for (const bool corner_high : {false, true}) {
       if (!box_.touches(c, corner_high) || box_.is_open(c, corner_high)) continue;
       Int3 first = begin, last = end;
@@ -135,7 +136,7 @@ private:
     return cell;
   }
 
-  /// Of the wall on what is inside, along c, per volume of the cell beside it.
+  /// Traction of the wall on the material inside, along c, divided by the spacing.
   double traction(int d, bool high, int c, const Int3 &cell) const {
     if (!viscosity_) return elastic_traction(d, high, c, cell);
     const ConstView q = velocity_[c];
@@ -176,7 +177,7 @@ void add_elastic(const Box &box, const std::vector<Segment> &rows, const Field &
   }
 }
 
-// What moving walls do on what a box holds.
+// Adds the power of moving walls on the contents of a box.
 void add_wall_power(const Box &box, const WallPower &walls, const EnergyNumbers &numbers, ExactSums *sums) {
   if (!numbers.sides) return;
   for (const auto [d, high] : box.sides())

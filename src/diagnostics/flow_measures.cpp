@@ -14,7 +14,7 @@ namespace {
 
 double square(double x) { return x * x; }
 
-// nu (d_b v_a + d_a v_b)^2 on the low edge normal to a and b of the cell that everything points to.
+// nu (d_b v_a + d_a v_b)^2 on the low edge, normal to a and b, of the cell `edge`.
 double on_edge(const Field &viscosity, const Field &velocity, const Real3 &h, int slot, int a, int b,
                const Int3 &edge) {
   const ConstView u = velocity[a], v = velocity[b];
@@ -23,7 +23,7 @@ double on_edge(const Field &viscosity, const Field &velocity, const Real3 &h, in
   return viscosity[slot](edge[0], edge[1], edge[2]) * square(rate);
 }
 
-// Of the deviator times twice D.
+// Dissipation by the deviator of 2 D at a centre.
 double at_centre_of(const ConstView &viscosity, const Field &velocity, const Real3 &h, int dimension,
                     const Int3 &cell) {
   double rate[3] = {}, sum = 0;
@@ -37,7 +37,8 @@ double at_centre_of(const ConstView &viscosity, const Field &velocity, const Rea
   return (dimension == 2 ? 1 : 2. / 3) * viscosity(cell[0], cell[1], cell[2]) * sum;
 }
 
-// That of the stress along surfaces: it and the rate of strain have no shear across them in common.
+// Dissipation by the stress along surfaces, (29a). It equals stress times its own rate of strain, as neither has shear
+// across the surface.
 template <int Dim>
 double along_surface(const Box &box, const Field &viscosity, const Field &velocity, const Int3 &cell) {
   const kernels::TangentialStress<Dim> stress = tangential_stress<Dim>(box, viscosity, velocity, cell[1], cell[2]);
@@ -48,14 +49,15 @@ double along_surface(const Box &box, const Field &viscosity, const Field &veloci
   return stress.excess[cell[0]] * sum;
 }
 
-// tau : grad v per mass of the cells of a row, into out[0 .. cells): normal stress at the centre, shear on the cell's
-// low edges. Edges on a side count half, those on the high side with the last cell, and where two sides meet nothing
-// moves: summed up, the power of the walls less that of add_viscous_force().
+// Writes tau : grad v per mass of the cells of a row to out[0 .. cells): normal stress at the centre, shear on the
+// cell's low edges. Edges on a boundary count half, and those on a high boundary belong to the last cell; an edge on
+// two boundaries does not move. The sum is the power of the walls less that of add_viscous_force(), (30).
 void viscous_dissipation(const Box &box, const Field &viscosity, const Field &velocity, const Segment &row,
                          double *out) {
   const int dim = box.dimension();
   const Real3 &h = box.spacing();
-  // Share of the edges with that index along d: on a side half, beyond the owned cells none but there.
+  // Share of the control volume of edges with this index along d: half on a boundary; behind the last cell only edges
+  // on a boundary count.
   const auto share = [&](int d, int index) {
     if (index == 0) return box.touches_low(d) ? 0.5 : 1.0;
     if (index == box.cells()[d]) return box.touches_high(d) ? 0.5 : 0.0;
@@ -84,7 +86,7 @@ void viscous_dissipation(const Box &box, const Field &viscosity, const Field &ve
 enum Sum { speed_squared, momentum_x, momentum_y, momentum_z, divergence_squared, gradient_squared, flow_sums };
 enum Maximum { max_x, max_y, max_z, max_speed_squared, max_divergence, maxima };
 
-// One row at a time: each measure of its cells, ready to be added up.
+// Computes each measure for the cells of one row at a time.
 class RowMeasures {
 public:
   RowMeasures(const Box &box, const Field &velocity)
@@ -120,7 +122,7 @@ public:
     return values_.data();
   }
 
-  /// Sum of (dv_a/dx_b)^2, each where it is compact: dv_a/dx_a at the centre, the others on the cell's low edges.
+  /// Sum of (dv_a/dx_b)^2 in compact differences: dv_a/dx_a at the centre, the others on the cell's low edges.
   const double *squared_gradient(const Segment &row) {
     start();
     for (int a = 0; a < dimension_; ++a)
@@ -146,8 +148,8 @@ private:
     for (int i = begin; i < end; ++i) values_[i] += weight * square((other[i] - q[i]) * inverse_h);
   }
 
-  // The edges on a wall normal to b own half a cell; those on the high wall count with the last cell.
-  // A face that lies on a wall does not move: where that wall meets a moving one there is no shear.
+  // Edges on a wall normal to b have half a control volume; those on the high wall belong to the last cell. A face on a
+  // wall does not move, so that there is no shear where this wall meets a moving one.
   void add_cross_differences(const Segment &row, int a, int b) {
     const int last = box_.cells()[b] - 1, index = b == 1 ? row.j : row.k;
     if (a != 0 && box_.touches_low(a) && (a == 1 ? row.j : row.k) == 0) return;
@@ -169,11 +171,11 @@ private:
   std::vector<double> values_;
 };
 
-// The faces on sides that volume crosses: half a control volume each, where rows have counted a whole one on low sides
-// and none on high ones, and no shear along them.
+// Corrections on boundaries that volume crosses: each face has half a control volume, where the rows have counted a
+// whole one on low boundaries and none on high ones, and there is no shear along these boundaries.
 class SideFaces {
 public:
-  /// `viscosity`: that the squares of gradients are weighted with.
+  /// `viscosity`: weight of the squared gradients.
   SideFaces(const Box &box, const Field &velocity, double viscosity, ExactSums *sums)
       : box_(box), velocity_(velocity), viscosity_(viscosity), sums_(sums) {}
 
@@ -208,14 +210,14 @@ double largest(const double *values, int n, double so_far) {
   return so_far;
 }
 
-// `sum`, `maximum`: of all ranks, as the enumerations above number them.
+// Computes the measures from sums and maxima over all ranks, in the order of the enumerations above.
 FlowMeasures evaluate(const Box &box, const FlowNumbers &numbers, const double *sum,
                       const std::vector<double> &maximum) {
   FlowMeasures m;
   const double volume = box.cell_volume(), cells = box.domain_cell_count();
   m.kinetic_energy = 0.5 * numbers.density * sum[speed_squared] * volume;
   for (int c = 0; c < 3; ++c) m.bulk_velocity[c] = sum[momentum_x + c] / cells;
-  // Maxima drop NaN; 0 * sum brings it back.
+  // Maxima ignore NaN; adding 0 * sum restores it.
   for (int c = 0; c < 3; ++c) m.velocity_max[c] = maximum[c] + 0 * sum[momentum_x + c];
   m.speed_max = std::sqrt(maximum[max_speed_squared]) + 0 * sum[speed_squared];
   const Real3 &h = box.spacing();
@@ -284,11 +286,11 @@ PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &ph
   const auto add_row = [](const Box &box, const Phase &phase, int p, const Segment &row, std::vector<double> &density,
                           ExactSums &sums) {
     const ConstView phi = phase.fraction[0];
-    const Segment held = phase.rows.within(row, phi);
-    const int sum_of_phase = sums_of_phase * p, i = held.i_begin, first = box.layout().begin[0] + i;
-    strain_energy(box, phase, held, density.data());
-    sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, held.size(), first);
-    sums.add_row(sum_of_phase + energy, density.data() + i, held.size(), first);
+    const Segment occupied = phase.rows.within(row, phi);
+    const int sum_of_phase = sums_of_phase * p, i = occupied.i_begin, first = box.layout().begin[0] + i;
+    strain_energy(box, phase, occupied, density.data());
+    sums.add_row(sum_of_phase + volume, phi.row(row.j, row.k) + i, occupied.size(), first);
+    sums.add_row(sum_of_phase + energy, density.data() + i, occupied.size(), first);
   };
   const auto add = [&](const RowPart &part, ExactSums &sums) {
     std::vector<double> density(domain.cells()[0]);

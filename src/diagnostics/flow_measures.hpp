@@ -1,7 +1,7 @@
-// The numbers of a flow: energies, means, divergence, dissipation, volumes, from two passes and three Allreduces.
+// Measures of a flow: energies, means, divergence, dissipation and volumes, from two passes and three Allreduces.
 //
-// Every value is an exact sum or a maximum: the same bits on any number of ranks. In 2-D integrals are per unit
-// depth. Control volumes are the points' own: half a cell for velocity gradients on a wall.
+// Every value is an exact sum or a maximum, so that the bits do not depend on the number of ranks. In 2-D integrals are
+// per unit depth. Velocity gradients on a wall have half a control volume.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,12 +11,13 @@
 
 namespace eulastic {
 
+/// Parameters of the measures.
 struct FlowNumbers {
   double density = 1, viscosity = 1;       ///< rho and mu (dynamic)
   double dt = 0;                           ///< time step
   double force = 0;                        ///< |f|, per mass
-  const Field *local_viscosity = nullptr;  ///< kinematic (flow/local_viscosity.hpp), where bodies have their own
-  const BoxSides *sides = nullptr;         ///< null: volume crosses none
+  const Field *local_viscosity = nullptr;  ///< kinematic viscosity (flow/local_viscosity.hpp) if bodies have their own
+  const BoxSides *sides = nullptr;         ///< null: volume crosses no boundary
 };
 
 struct FlowMeasures {
@@ -24,18 +25,19 @@ struct FlowMeasures {
   Real3 bulk_velocity{};      ///< means of u, v, w over the box
   Real3 velocity_max{};       ///< max |u|, |v|, |w|
   double speed_max = 0;       ///< max |v| at cell centres
-  double divergence_rms = 0;  ///< of div v h / U: h the smallest spacing, U = max(speed_max, |f| dt); 0/0 = 0
+  double divergence_rms = 0;  ///< rms of div v h / U, with h the smallest spacing, U = max(speed_max, |f| dt), 0/0 = 0
   double divergence_max = 0;
   double viscous_dissipation = 0;    ///< integral of mu grad v : grad v, or tau : grad v; energy / time
   double elastic_energy = 0;         ///< strain energy: sum over phases of the integral of phi W
   std::vector<double> phase_volume;  ///< integral of phi, per phase
 };
 
-/// `velocity`: u, v (, w), one ghost layer valid. A value that is not finite makes the sums it enters NaN.
+/// Measures the flow. `velocity`: u, v (, w) with one valid ghost layer. Non-finite values make the sums that contain
+/// them NaN. Collective.
 PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const FlowNumbers &numbers,
                             FlowMeasures *measures);
-/// The last two of the measures. `bodies`: those of this rank that lie in boxes; they count with the phases of their
-/// species.
+/// Measures elastic_energy and phase_volume. `bodies`: bodies of this rank in boxes, which count with the phases of
+/// their species. Collective.
 PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &phases, FlowMeasures *measures,
                               const std::vector<BodyInBox> &bodies = {});
 

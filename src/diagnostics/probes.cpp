@@ -13,18 +13,19 @@ namespace {
 constexpr int values = 5;
 static_assert(sizeof(Sample) == values * sizeof(double), "reduced as doubles");
 
-// The cell that holds a point, and whether this rank owns it.
-class Place {
+// The cell that contains a point.
+class ProbeCell {
 public:
-  Place(const Domain &domain, const Real3 &point) : domain_(domain) {
+  ProbeCell(const Domain &domain, const Real3 &point) : domain_(domain) {
     for (int d = 0; d < domain.dimension(); ++d) {
       cells_[d] = point[d] / domain.spacing()[d];
       cell_[d] = std::clamp(static_cast<int>(std::floor(cells_[d])), 0, domain.domain_cells()[d] - 1);
     }
   }
-  bool is_here() const { return domain_.owner(cell_[0], cell_[1], cell_[2]) == domain_.rank(); }
+  bool is_owned() const { return domain_.owner(cell_[0], cell_[1], cell_[2]) == domain_.rank(); }
 
-  /// Linear in every direction. `extrapolate`: a centred field is never looked up behind a wall.
+  /// Interpolates linearly in every direction. `extrapolate`: extrapolate from inside instead of reading behind a
+  /// boundary.
   double interpolate(ConstView q, const Staggering &at, bool extrapolate) const {
     Int3 base{};
     Real3 weight{};
@@ -57,8 +58,8 @@ PetscErrorCode sample_points(const Domain &domain, const SampledFields &fields, 
   VerbScope scope(Verb::sums);
   samples->assign(points.size(), {});
   for (std::size_t n = 0; n < points.size(); ++n) {
-    const Place place(domain, points[n]);
-    if (!place.is_here()) continue;
+    const ProbeCell place(domain, points[n]);
+    if (!place.is_owned()) continue;
     Sample &sample = (*samples)[n];
     for (int c = 0; c < domain.dimension(); ++c)
       sample.velocity[c] = place.interpolate(fields.velocity[c], at_face[c], false);

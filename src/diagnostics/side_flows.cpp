@@ -8,13 +8,13 @@ namespace {
 
 enum Sum { into_box, pressure_sum, power_sum, faces_sum, sums };
 
-// Sums over the faces of one side, if this rank has any.
+// Sums over the faces of one boundary on this rank.
 class SideSums {
 public:
   SideSums(const Box &box, double density, const Field &velocity, const Field &pressure)
       : box_(box), density_(density), velocity_(velocity), pressure_(pressure) {}
 
-  /// `profile`: of an inflow side, 0 where it is covered; or null.
+  /// `profile`: that of an inflow boundary, 0 where solids cover it; or null.
   void add(const SideFlow &side, const SideProfile *profile, int first, ExactSums *all) const {
     const int d = side.direction;
     for_points(box_.cells_at(d, side.high, 1), [&](int i, int j, int k) {
@@ -26,7 +26,7 @@ public:
         all->add(first + pressure_sum, p);
         all->add(first + faces_sum, 1);
       }
-      // What comes in through an outflow side has no more energy than fluid at rest outside.
+      // Fluid that enters through an outflow boundary has no more energy than fluid at rest outside.
       const double backflow = side.kind == SideKind::outflow && inward > 0 ? 0.5 * density_ * along * along : 0;
       all->add(first + power_sum, inward * ((p - backflow) + 0.5 * density_ * speed_squared));
     });
@@ -35,12 +35,12 @@ public:
 private:
   double pressure_on(const SideFlow &side, const Int3 &cell) const {
     const ConstView p = pressure_[0];
-    const double *here = &p(cell[0], cell[1], cell[2]);
+    const double *inside = &p(cell[0], cell[1], cell[2]);
     if (is_open(side.kind)) return side.pressure;
-    return 1.5 * here[0] - 0.5 * here[side.high ? -p.stride(side.direction) : p.stride(side.direction)];
+    return 1.5 * inside[0] - 0.5 * inside[side.high ? -p.stride(side.direction) : p.stride(side.direction)];
   }
 
-  /// x before y before z, over all cells of a side of direction d.
+  /// Index of a cell on a boundary normal to d, over all its cells, x before y before z.
   std::size_t index_on_side(int d, const Int3 &cell) const {
     const int a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
     const Int3 &begin = box_.layout().begin;

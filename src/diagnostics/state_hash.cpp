@@ -12,7 +12,7 @@ std::uint64_t bits_of(double value) noexcept {
   return bits;
 }
 
-// SplitMix64's finaliser (Steele, Lea, Flood 2014).
+// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t mix(std::uint64_t x) noexcept {
   x += 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -41,7 +41,7 @@ std::uint64_t hash_body(const BodyInBox &body) {
   const Int3 &begin = box.layout().begin;
   const ConstView phi = body.phase->fraction[0];
   std::uint64_t hash = 0;
-  // `near`: offsets of the centres around a point.
+  // `near`: offsets to the centres around a point.
   const auto add = [&](ConstView field, const Staggering &at, const std::array<std::ptrdiff_t, 2> &near,
                        int component) {
     for (int k = 0; k < box.points_end(2, at[2]); ++k)
@@ -49,8 +49,8 @@ std::uint64_t hash_body(const BodyInBox &body) {
         const std::uint64_t y = static_cast<std::uint32_t>(begin[1] + j), z = static_cast<std::uint32_t>(begin[2] + k);
         const std::uint64_t row_key = mix(mix(body.number + (std::uint64_t(component) << 32)) ^ mix(y + (z << 32)));
         for (int i = 0; i < box.points_end(0, at[0]); ++i) {
-          const double *here = &phi(i, j, k);
-          if (here[0] != 0 || here[-near[0]] != 0 || here[-near[1]] != 0 || here[-near[0] - near[1]] != 0)
+          const double *q = &phi(i, j, k);
+          if (q[0] != 0 || q[-near[0]] != 0 || q[-near[1]] != 0 || q[-near[0] - near[1]] != 0)
             hash += mix(bits_of(field(i, j, k)) ^ mix(row_key + static_cast<std::uint32_t>(begin[0] + i)));
         }
       }

@@ -1,4 +1,4 @@
-// A hash of the state, by which runs are compared.
+// Hashes by which the states of runs are compared.
 #pragma once
 
 #include "field/phase.hpp"
@@ -7,14 +7,14 @@
 
 namespace eulastic {
 
-/// Rank-independent hash of the owned points of one field, those on high sides included, to be added up over fields and
-/// ranks (MPI_SUM on uint64). `salt` tells fields apart.
+/// Hash of the owned points of one field, those on high boundaries included. The sum over fields and ranks (MPI_SUM of
+/// uint64) does not depend on the ranks. `salt`: a different number for each field.
 std::uint64_t hash_points(const Box &box, ConstView field, const Staggering &staggering, std::uint64_t salt);
 /// Hash of one record.
 std::uint64_t hash_values(const double *values, std::size_t count);
 
-/// The same of a body in a box of its own: of phi and B where it has a part, so that the hash does not depend on what
-/// else the box holds.
+/// Hash of a body in a box of its own: of phi and B at points that contain a part of it, so that the rest of the box
+/// does not matter, and of its markers.
 std::uint64_t hash_body(const BodyInBox &body);
 
 }  // namespace eulastic

@@ -12,11 +12,11 @@ namespace {
 
 constexpr int per_body = 6;  // force, torque
 
-// phi of bodies that bear loads, and their labels.
+// Solid fraction and labels of bodies whose loads are measured.
 struct Surface {
   const Box &box;
   ConstView phi, label;
-  const OccupiedRows *rows = nullptr;  // of phi, where they are known
+  const OccupiedRows *rows = nullptr;  // of phi; null: all rows
 };
 
 class SurfaceLoads {
@@ -29,7 +29,7 @@ public:
     }
   }
 
-  // Adds what a stress, normal(a, cell) at centres and shear(a, b, cell) on low edges, exerts on a surface.
+  // Adds the load of a stress on a surface; normal(a, cell) is at centres, shear(a, b, cell) on low edges.
   template <class Normal, class Shear>
   void add(const Surface &of, const Normal &normal, const Shear &shear) {
     const Box &box = of.box;
@@ -47,7 +47,7 @@ public:
   ExactSums &sums() { return sums_; }
 
 private:
-  // The forces along a that sigma_aa at the centres of a row are, by the phi of the cells on both sides.
+  // Adds the forces along a from sigma_aa at the centres of a row, for phi of the cells on both sides.
   template <class Normal>
   void add_centres(const Surface &of, int a, const Segment &row, const Normal &normal) {
     const std::ptrdiff_t step = of.phi.stride(a);
@@ -71,7 +71,7 @@ private:
         });
   }
 
-  // The forces along a and b that sigma_ab on the low edges of a row of cells are, by the phi of the four cells around.
+  // Adds the forces along a and b from sigma_ab on the low edges of a row of cells, for phi of the four cells around.
   template <class Shear>
   void add_edges(const Surface &of, int a, int b, const Segment &row, const Shear &shear) {
     const Box &box = of.box;
@@ -99,7 +99,7 @@ private:
     });
   }
 
-  // visit(i) where cut(i).
+  // Calls visit(i) where cut(i) holds.
   template <class Cut, class Visit>
   void for_cut(const Segment &row, const Cut &cut, const Visit &visit) {
     flags_.resize(std::max<std::size_t>(flags_.size(), row.i_end));
@@ -109,13 +109,13 @@ private:
       if (flags[i]) visit(i);
   }
 
-  // In cells: a face on a side of the box has half of one.
+  // Control volume of a face in cells: half of one on a boundary of the box.
   static double volume_of_face(const Box &box, int a, const Int3 &cell) {
     const int at = box.layout().begin[a] + cell[a];
     return box.is_wall(a) && (at == 0 || at == box.domain_cells()[a]) ? 0.5 : 1;
   }
 
-  // `place`: of the force, in cells from the centre of the cell whose phi it comes from.
+  // Adds a force and its torque. `place`: where it acts, in cells from the centre of the cell whose phi it belongs to.
   void add(const Surface &of, const Int3 &cell, const Real3 &place, const Real3 &force) {
     const Box &box = of.box;
     const auto label = static_cast<std::size_t>(of.label(cell[0], cell[1], cell[2]));
@@ -137,7 +137,7 @@ private:
 
   const std::vector<SurfaceLoad> &loads_;
   ExactSums sums_;
-  std::vector<int> index_;  ///< of every label
+  std::vector<int> index_;  ///< index in loads_ of every label, -1: none
   std::vector<unsigned char> flags_;
 };
 

@@ -11,18 +11,18 @@
 namespace eulastic {
 namespace {
 
-constexpr double trace = 1e-3;  // of solid that makes no surface
+constexpr double trace = 1e-3;  // solid fractions below this, or above 1 less this, are no surface
 
-// The surface in a cell: a point of it, from the cell's centre in cells, and its normal out of the solid.
+// The plane of the surface in a cell: a point on it, in cells from the centre, and its unit normal out of the solid.
 struct SurfacePlane {
   Real3 point{}, normal{};
 };
 
-// Terms of a linear function and of a quadratic.
+// Numbers of terms of a linear and of a quadratic function.
 constexpr int linear_terms(int dimension) { return 1 + dimension; }
 constexpr int quadratic_terms(int dimension) { return 1 + dimension + dimension * (dimension + 1) / 2; }
 
-// Those of a quadratic, the linear ones first.
+// Evaluates the terms of a quadratic, linear terms first.
 template <int Dim>
 EULASTIC_INLINE void terms(const Real3 &r, double *t) {
   int n = 0;
@@ -32,7 +32,7 @@ EULASTIC_INLINE void terms(const Real3 &r, double *t) {
     for (int e = d; e < Dim; ++e) t[n++] = r[d] * r[e];
 }
 
-// Least-squares fits of several functions that are known at the same points: their normal equations.
+// Least-squares fit of several functions at the same points, by normal equations.
 template <int Terms, int Functions>
 struct Fit {
   double gram[Terms][Terms]{}, right[Functions][Terms]{};
@@ -46,10 +46,10 @@ struct Fit {
     }
   }
 
-  // Replaces the matrix by its Cholesky factor. If the points do not determine all coefficients, solve() finds those of
-  // a linear function, or none.
+  // Replaces the matrix by its Cholesky factor. If the points do not determine all coefficients, solve() returns those
+  // of a linear function, or none.
   void factor(int linear) {
-    constexpr double least = 1e-8;  // of a diagonal element that is left of it
+    constexpr double least = 1e-8;  // relative size of a diagonal element after elimination that counts as 0
     int n = 0;
     for (; n < Terms; ++n) {
       const double whole = gram[n][n];
@@ -66,7 +66,7 @@ struct Fit {
     determined = n == Terms ? n : n >= linear ? linear : 0;
   }
 
-  // The coefficients of a function, after factor().
+  // Computes the coefficients of a function, after factor().
   void solve(int function, double *x) const {
     std::fill_n(x, Terms, 0.0);
     for (int a = 0; a < determined; ++a) {
@@ -81,11 +81,12 @@ struct Fit {
   }
 };
 
-class SurfaceCells {
+// The cells that a surface cuts.
+class CutCells {
 public:
-  SurfaceCells(const Box &box, ConstView solid) : box_(box), dimension_(box.dimension()), solid_(solid) {}
+  CutCells(const Box &box, ConstView solid) : box_(box), dimension_(box.dimension()), solid_(solid) {}
 
-  // Adds traction(cell, plane), which need not be tangential.
+  // Adds the tangential part of traction(cell, plane) to `stress` in all cut cells.
   template <class Traction>
   void add_to(Field &stress, const Traction &traction) const {
     for_points(box_.rows(), [&](int i, int j, int k) {
@@ -98,19 +99,19 @@ public:
     });
   }
 
-  // visit(r, cell) for points of a field within `radius` cells of the surface, but those on sides: r from there, in
-  // cells.
+  // Calls visit(r, cell) for the points of a field within `radius` cells of the surface point, except for those on
+  // boundaries; r is the offset from it, in cells.
   template <class Visit>
-  void for_places(const Staggering &at, int reach, double radius, const Int3 &cell, const SurfacePlane &plane,
-                  const Visit &visit) const {
+  void for_points_near(const Staggering &at, int reach, double radius, const Int3 &cell, const SurfacePlane &plane,
+                       const Visit &visit) const {
     Int3 low{}, high{};
     for (int d = 0; d < dimension_; ++d) {
-      const int here = box_.layout().begin[d] + cell[d];
+      const int index = box_.layout().begin[d] + cell[d];
       low[d] = -reach + at[d];
       high[d] = reach;
       if (!box_.is_wall(d)) continue;
-      low[d] = std::max(low[d], at[d] - here);
-      high[d] = std::min(high[d], box_.domain_cells()[d] - 1 - here);
+      low[d] = std::max(low[d], at[d] - index);
+      high[d] = std::min(high[d], box_.domain_cells()[d] - 1 - index);
     }
     const auto away = [&](int d, int offset) {
       return d < dimension_ ? offset - (at[d] ? 0.5 : 0) - plane.point[d] : 0.0;
@@ -136,7 +137,7 @@ private:
     return false;
   }
 
-  // Of the surface in a cell the plane that leaves the cell its volume of solid.
+  // Finds the plane that cuts the solid fraction of the cell from it.
   bool find_plane(const Int3 &cell, SurfacePlane *plane) const {
     const double *q = &solid_(cell[0], cell[1], cell[2]);
     const std::ptrdiff_t sy = solid_.stride(1), sz = solid_.stride(2);
@@ -161,10 +162,10 @@ private:
   ConstView solid_;
 };
 
-// The components of the stress at the places where somebody asks for them, found once.
-class KnownStress {
+// Components of the stress, computed where they are needed and stored.
+class CachedStress {
 public:
-  explicit KnownStress(const WholeStress &whole)
+  explicit CachedStress(const WholeStress &whole)
       : whole_(whole), known_(whole.viscosity.box, whole.viscosity.box.dimension() == 3 ? 6 : 3) {
     for (int c = 0; c < known_.count(); ++c) known_.fill(c, std::nan(""));
   }
@@ -180,17 +181,18 @@ private:
   Field known_;
 };
 
-// From the fluid's side: quadratics through its velocity, the closer the further from the surface it is.
+// Traction from the fluid side of a rigid surface: quadratics are fitted to the fluid velocity with the squared
+// distance from the surface as the weight.
 template <int Dim>
-Real3 rigid_traction(const SurfaceCells &cells, const Box &box, double viscosity, ConstView solid,
-                     const Field &velocity, const Int3 &cell, const SurfacePlane &plane) {
+Real3 rigid_traction(const CutCells &cells, const Box &box, double viscosity, ConstView solid, const Field &velocity,
+                     const Int3 &cell, const SurfacePlane &plane) {
   constexpr int count = quadratic_terms(Dim);
   const Real3 &h = box.spacing();
   const double finest = Dim == 2 ? std::min(h[0], h[1]) : std::min({h[0], h[1], h[2]});
   double gradient[3][3]{};
   for (int a = 0; a < Dim; ++a) {
     Fit<count, 1> fit;
-    cells.for_places(at_face[a], 3, 3.5, cell, plane, [&](const Real3 &r, const Int3 &place) {
+    cells.for_points_near(at_face[a], 3, 3.5, cell, plane, [&](const Real3 &r, const Int3 &place) {
       const double *q = &solid(place[0], place[1], place[2]);
       double distance = 0;
       for (int d = 0; d < Dim; ++d) distance += r[d] * h[d] * plane.normal[d] / finest;
@@ -210,14 +212,14 @@ Real3 rigid_traction(const SurfaceCells &cells, const Box &box, double viscosity
   return traction;
 }
 
-// Through the surface: what the momentum equation passes on there, viscous and elastic, goes from one side to the
-// other.
+// Traction on an elastic surface: linear functions are fitted to viscous plus elastic stress on both sides, because the
+// traction is continuous.
 template <int Dim>
-Real3 elastic_traction(const SurfaceCells &cells, KnownStress &known, const Int3 &cell, const SurfacePlane &plane) {
+Real3 elastic_traction(const CutCells &cells, CachedStress &known, const Int3 &cell, const SurfacePlane &plane) {
   constexpr int count = linear_terms(Dim);
   double stress[Dim][Dim], x[count];
   Fit<count, Dim> normal;
-  cells.for_places(at_centre, 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
+  cells.for_points_near(at_centre, 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
     const double t[] = {1, r[0], r[1], r[2]};
     double values[Dim];
     for (int a = 0; a < Dim; ++a) values[a] = known.at(a, a, place);
@@ -229,7 +231,7 @@ Real3 elastic_traction(const SurfaceCells &cells, KnownStress &known, const Int3
     stress[a][a] = x[0];
     for (int b = a + 1; b < Dim; ++b) {
       Fit<count, 1> shear;
-      cells.for_places(at_edge(a, b), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
+      cells.for_points_near(at_edge(a, b), 2, 2, cell, plane, [&](const Real3 &r, const Int3 &place) {
         const double t[] = {1, r[0], r[1], r[2]}, value = known.at(a, b, place);
         shear.add(t, 1, &value);
       });
@@ -251,7 +253,7 @@ Real3 elastic_traction(const SurfaceCells &cells, KnownStress &known, const Int3
 
 void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const Field &velocity, Field &stress) {
   const VerbScope scope(Verb::sums);
-  const SurfaceCells cells(box, solid);
+  const CutCells cells(box, solid);
   const auto traction = box.dimension() == 2 ? rigid_traction<2> : rigid_traction<3>;
   cells.add_to(stress, [&](const Int3 &cell, const SurfacePlane &plane) {
     return traction(cells, box, viscosity, solid, velocity, cell, plane);
@@ -260,9 +262,9 @@ void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid,
 
 void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field &stress) {
   const VerbScope scope(Verb::sums);
-  const SurfaceCells cells(whole.viscosity.box, solid);
+  const CutCells cells(whole.viscosity.box, solid);
   const auto traction = whole.viscosity.box.dimension() == 2 ? elastic_traction<2> : elastic_traction<3>;
-  KnownStress known(whole);
+  CachedStress known(whole);
   cells.add_to(stress,
                [&](const Int3 &cell, const SurfacePlane &plane) { return traction(cells, known, cell, plane); });
 }

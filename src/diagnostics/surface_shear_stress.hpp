@@ -1,16 +1,16 @@
-// The shear stress of the fluid on the surfaces of vessels and obstacles, in the cells that these cut: sigma.n without
-// its normal part, n out of the body (docs/method.md, section 14).
+// Shear stress of the fluid on the surfaces of vessels and obstacles, in the cells they cut: sigma.n without its normal
+// part, with n out of the body (docs/method.md, section 14).
 #pragma once
 
 #include "diagnostics/edge_stress.hpp"
 
 namespace eulastic {
 
-/// Adds to `stress`, three fields, in owned cells that the surface cuts, and in those without solid whose neighbour is
-/// full of it. `solid`: volume fraction of rigid bodies, three ghosts, as of the velocity; `viscosity`: dynamic, of the
-/// fluid.
+/// Adds the shear stress to the three components of `stress` in owned cells that the surface cuts, and in cells without
+/// solid beside a full one. `solid`: solid fraction of rigid bodies. Reads three ghosts of it and of the velocity.
+/// `viscosity`: dynamic, of the fluid.
 void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const Field &velocity, Field &stress);
-/// The same of elastic bodies; two ghosts of B and of the viscosity too.
+/// Does the same for elastic bodies; reads two ghosts of B and of the viscosity as well.
 void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field &stress);
 
 }  // namespace eulastic

@@ -6,13 +6,13 @@
 namespace eulastic {
 namespace {
 
-class OneWall {
+// Traction on one wall.
+class WallTraction {
 public:
-  OneWall(const Box &box, int direction, bool high)
+  WallTraction(const Box &box, int direction, bool high)
       : box_(box), d_(direction), high_(high), last_(box.cells()[direction] - 1) {}
 
-  /// Adds to the traction along c at the low c-face of the wall's cells and at that of their upper neighbours, each
-  /// with half its weight.
+  /// Adds to the traction along c the mean of value(cell) at both c-faces of each cell beside the wall.
   template <class Value>
   void add(int c, WallStress *stress, Value value) const {
     Int3 end = box_.cells();
@@ -27,7 +27,7 @@ public:
     });
   }
 
-  // The stress that the momentum equation sees.
+  // Adds the viscous stress of the momentum equation.
   void add_viscous(int c, const EdgeViscosity &viscosity, double wall, ConstView q, WallStress *stress) const {
     add(c, stress, [&](const Int3 &cell) {
       Int3 edge = cell;
@@ -72,7 +72,7 @@ std::vector<WallStress> wall_shear_stress(const Box &box, const BoxSides &sides,
     stress.sz = std::ptrdiff_t(n[0]) * n[1];
     for (auto &values : stress.components) values.assign(std::size_t(n[0]) * n[1] * n[2], 0.0);
     if (n[d] == 0) continue;
-    const OneWall wall(box, d, high);
+    const WallTraction wall(box, d, high);
     const Real3 speed = sides[d][high].motion.at(time);
     for (int c = 0; c < box.dimension(); ++c) {
       if (c == d) continue;

@@ -1,7 +1,7 @@
-// The tangential traction of fluid and attached bodies on the walls: mu du/dn + elastic stress, n into the box.
+// Tangential traction of fluid and anchored bodies on the walls: mu du/dn + elastic stress, with n into the box.
 //
-// du/dn is one-sided and second order, from the wall's velocity and two points; averaged to the centres of the wall's
-// cells.
+// du/dn is the difference between the velocity of the wall and that of the first point, half a cell away, as in the
+// momentum equation, averaged to the centres of the wall's cells.
 #pragma once
 
 #include "field/phase.hpp"
@@ -11,8 +11,8 @@
 
 namespace eulastic {
 
-/// One wall. Components x, y, z (0 along the normal) of its cells on this rank, x fastest; nothing on ranks that do
-/// not touch it.
+/// Traction on one wall: components x, y, z (0 along the normal) in its cells on this rank, x fastest; empty on ranks
+/// that do not touch the wall.
 struct WallStress {
   int direction = 0;
   bool high = false;
@@ -21,7 +21,7 @@ struct WallStress {
   ConstView view(int c) const { return {components[c].data(), sy, sz}; }
 };
 
-/// All walls of the box. One ghost layer of velocity (at `time`) and B must be valid.
+/// Traction on all walls of the box. Reads one ghost layer of velocity (at `time`) and B.
 std::vector<WallStress> wall_shear_stress(const Box &box, const BoxSides &sides, double time,
                                           const EdgeViscosity &viscosity, const Field &velocity,
                                           const std::vector<Phase> &phases);

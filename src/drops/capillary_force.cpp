@@ -12,19 +12,20 @@
 namespace eulastic {
 namespace {
 
-// Scratch fields: weight times curvature, and the weight of a cell, phi (1 - phi) and something where a full
-// cell meets an empty one. 0: there is no curvature.
+// Scratch fields: weight times curvature, and the weight of a cell, phi (1 - phi) plus a small number for full cells
+// beside empty ones. Cells without a curvature have weight 0.
 enum Scratch { weighted, weight };
 constexpr double least_weight = 1e-16;
 
-// Cells whose curvature is looked for, in loops as long as the list.
-struct SurfaceCells {
+// A list of cells whose curvatures are computed in one vector loop.
+struct CellList {
   static constexpr int capacity = 128;
   std::ptrdiff_t at[capacity];
   kernels::ColumnFrame frame[capacity];
   int count = 0;
 };
 
+// Views of the fields that the curvature is computed from and stored in.
 struct Curvature {
   const Box &box;
   ConstView phi;
@@ -46,8 +47,9 @@ struct Curvature {
   EULASTIC_INLINE static double weight_of(double q) { return q * (1 - q) + least_weight; }
 };
 
+// Computes and stores the curvatures of a list of cells, and empties the list.
 template <int Dim>
-EULASTIC_INLINE void end_list(const Curvature &c, SurfaceCells &cells) {
+EULASTIC_INLINE void process_list(const Curvature &c, CellList &cells) {
 #pragma omp simd
   for (int n = 0; n < cells.count; ++n) {
     const std::ptrdiff_t at = cells.at[n];
@@ -59,12 +61,12 @@ EULASTIC_INLINE void end_list(const Curvature &c, SurfaceCells &cells) {
   cells.count = 0;
 }
 
-// From heights, in the owned cells of segments.
+// Computes curvatures from heights in the owned cells of segments. Returns their number.
 template <int Dim>
 EULASTIC_INLINE long from_heights(const Curvature &c, const Segment *begin, const Segment *end) {
   const Int3 n = c.box.cells();
   const Real3 h = c.box.spacing();
-  SurfaceCells cells;
+  CellList cells;
   long count = 0;
   for (const Segment *s = begin; s < end; ++s) {
     if (s->j < 0 || s->j >= n[1] || s->k < 0 || s->k >= n[2]) continue;
@@ -73,10 +75,10 @@ EULASTIC_INLINE long from_heights(const Curvature &c, const Segment *begin, cons
       if (!c.cut(q + i) || !kernels::column_frame<Dim>(q + i, c.stride, h.data(), &cells.frame[cells.count])) continue;
       cells.at[cells.count++] = q + i - c.phi.origin;
       ++count;
-      if (cells.count == SurfaceCells::capacity) end_list<Dim>(c, cells);
+      if (cells.count == CellList::capacity) process_list<Dim>(c, cells);
     }
   }
-  end_list<Dim>(c, cells);
+  process_list<Dim>(c, cells);
   return count;
 }
 
@@ -87,26 +89,29 @@ EULASTIC_CLONES long from_heights_3d(const Curvature &c, const Segment *begin, c
   return from_heights<3>(c, begin, end);
 }
 
-struct Mended {
+// A cell whose curvature is the mean of its neighbours'.
+struct AveragedCell {
   std::ptrdiff_t at;
   double sum, weight;
 };
 
-// Cells without heights take the mean of those around that have them: what to write, once all have read.
+// Lists cells without heights with the mean curvature of the cells around that have one. The values are written after
+// all cells have read.
 template <int Dim>
-EULASTIC_INLINE void mend(const Curvature &c, const Segment *begin, const Segment *end, std::vector<Mended> *mended) {
+EULASTIC_INLINE void average_neighbours(const Curvature &c, const Segment *begin, const Segment *end,
+                                        std::vector<AveragedCell> *averaged) {
   for (const Segment *s = begin; s < end; ++s) {
     const double *q = c.phi.row(s->j, s->k);
     for (int i = s->i_begin; i < s->i_end; ++i) {
       const std::ptrdiff_t at = q + i - c.phi.origin;
       if (!c.cut(q + i) || c.weight.origin[at] > 0) continue;
       const double total = kernels::sum_around<Dim>(c.weight.origin + at, c.stride), w = Curvature::weight_of(q[i]);
-      if (total > 0) mended->push_back({at, w * (kernels::sum_around<Dim>(c.sum.origin + at, c.stride) / total), w});
+      if (total > 0) averaged->push_back({at, w * (kernels::sum_around<Dim>(c.sum.origin + at, c.stride) / total), w});
     }
   }
 }
 
-// Where in the band of the phase its faces feel the force, and how much: add(offset, force) for component d.
+// The force on faces of component d in the band of a phase: calls add(i, force) for each face of a segment.
 struct Faces {
   const Curvature &curvature;
   int d;
@@ -135,7 +140,7 @@ EULASTIC_CLONES void power_row(const Faces &faces, const Segment &s, const doubl
   faces.row(s, [=](int i, double f) EULASTIC_BODY { power[i] = kernels::fma(-f, v[i], power[i]); });
 }
 
-// The plane of a cut cell, and faces between full and empty cells.
+// Area in a cell: that of its plane if the surface cuts it, and of its low faces between full and empty cells.
 template <int Dim>
 EULASTIC_INLINE double area_at(const Curvature &c, const double *q) {
   const Real3 h = c.box.spacing();
@@ -147,7 +152,7 @@ EULASTIC_INLINE double area_at(const Curvature &c, const double *q) {
   return *q > 0 && *q < 1 ? area + kernels::plane_area<Dim>(q, c.stride, face) : area;
 }
 
-// Pieces of the band on an owned row.
+// Calls work(segment) for the owned parts of the band in a row.
 template <class Work>
 void for_owned(const Box &box, const ActiveSegments &band, int j, int k, const Work &work) {
   for (const Segment &s : band.row(j, k)) {
@@ -158,7 +163,7 @@ void for_owned(const Box &box, const ActiveSegments &band, int j, int k, const W
 
 }  // namespace
 
-// In the cells of the band and a layer of ghosts.
+// The curvature is found in the cells of the band, including one ghost layer.
 PetscErrorCode CapillaryForce::find(const Phase &phase, Field &work) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::surface_tension);
@@ -179,15 +184,16 @@ PetscErrorCode CapillaryForce::find(const Phase &phase, Field &work) {
   });
   if (exchange_) PetscCall(exchange_->update_ghosts(work_, work_ghosts, &phase.rows));
   for (int f = 0; f < work_fields; ++f) fill_wall_ghosts_even(box, at_centre, work_[f], work_ghosts, &phase.rows);
-  std::vector<std::vector<Mended>> mended(parts);
+  std::vector<std::vector<AveragedCell>> averaged(parts);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(band.size(), part, parts);
-    (flat ? mend<2> : mend<3>)(curvature, band.data() + piece.begin, band.data() + piece.end, &mended[part]);
+    (flat ? average_neighbours<2> : average_neighbours<3>)(curvature, band.data() + piece.begin,
+                                                           band.data() + piece.end, &averaged[part]);
   });
   long cells = 0;
   for (const long count : counted) cells += count;
-  for (const std::vector<Mended> &some : mended)
-    for (const Mended &cell : some) {
+  for (const std::vector<AveragedCell> &list : averaged)
+    for (const AveragedCell &cell : list) {
       curvature.sum.origin[cell.at] = cell.sum;
       curvature.weight.origin[cell.at] = cell.weight;
     }
@@ -195,7 +201,7 @@ PetscErrorCode CapillaryForce::find(const Phase &phase, Field &work) {
   PetscFunctionReturn(0);
 }
 
-// Of the owned cells; in a box also of the first ghosts, which nobody sends: no curvature is there.
+// Clears the scratch fields in owned cells and, in a box, also in the first ghosts, which no exchange fills.
 void CapillaryForce::clear_work() {
   const int n = box_->cells()[0], ghosts = exchange_ ? 0 : 1;
   in_row_parts(*box_, [&](const RowPart &part) {

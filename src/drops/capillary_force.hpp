@@ -15,40 +15,42 @@ namespace eulastic {
 class CapillaryForce {
 public:
   static constexpr int work_fields = 2;
-  /// Cells beyond phi != 0 that have a curvature, and faces beyond it that feel the force: a box needs so many cells
-  /// around the body, except at sides of the domain.
+  /// Distance in cells from phi != 0 of cells with a curvature, and of faces with a force. A box needs as many cells
+  /// around the body, except at boundaries of the domain.
   static constexpr int reach = 1;
-  /// Cells beyond phi != 0 that the spans of Phase::rows must hold: those whose scratch values are read.
+  /// Distance in cells from phi != 0 that the spans of Phase::rows must cover, because scratch values are read there.
   static constexpr int span_reach = 2;
-  /// Cells beyond phi != 0 whose phi is read. phi needs so many valid layers of ghosts, and so has the grid or box.
+  /// Distance in cells from phi != 0 in which phi is read: number of valid ghost layers that phi, and grid or box,
+  /// need.
   static constexpr int phi_ghosts = 5;
 
-  /// `exchange`: of the grid; null for a box that is whole on this rank. Both must outlive this.
+  /// `exchange`: that of the grid, or null for a box that is complete on this rank. `box` and `exchange` must outlive
+  /// this.
   CapillaryForce(const Box &box, GhostExchange *exchange) : box_(&box), exchange_(exchange) {}
 
-  /// Finds the curvature of the surface of a phase. All that follows is of this phase, and uses it and `work`,
-  /// work_fields fields of any values, until the next find(). Collective on the grid.
+  /// Computes the curvature of the surface of a phase. All later calls refer to this phase and to `work`, work_fields
+  /// components, until the next find(). Collective on the grid.
   PetscErrorCode find(const Phase &phase, Field &work);
-  /// All faces that feel the force, and some more; a layer of ghosts is included.
+  /// A superset of the faces with a force, one ghost layer included.
   const ActiveSegments &faces() const { return band_; }
-  /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Adds to `net` what is added to
-  /// `force`.
+  /// force += scale sigma kappa grad(phi) at owned faces; the force, times its factor, is also added to `slope`. Adds
+  /// what is added to `force` to `net`.
   void add_force(double scale, Field &force, const WeightedTarget &slope, NetForce *net);
-  /// The power that the flow gives to the surface over the volume of a cell, and the area of the planes that transport
-  /// cuts cells with (2-D: the length), of which sigma times is the energy.
+  /// The power that the flow supplies to the surface, divided by the cell volume, and the area of the planes by which
+  /// transport cuts cells (2-D: length); sigma times the area is the energy.
   enum Sum { power, area, sums };
-  /// Adds them to sum number `first_sum` and the next of every part of the rows.
+  /// Adds power and area to the sums `first_sum` and first_sum + 1 of each row part.
   void measure(const Field &velocity, int first_sum, std::vector<ExactSums> *sum);
 
 private:
-  static constexpr int work_ghosts = 2;  ///< layers of the scratch fields that are read
+  static constexpr int work_ghosts = 2;  ///< ghost layers of the scratch fields that are read
   void clear_work();
 
   const Box *box_;
   GhostExchange *exchange_;
   const Phase *phase_ = nullptr;
-  Field work_;           ///< borrowed
-  ActiveSegments band_;  ///< with a layer of ghosts
+  Field work_;           ///< view of `work` of find()
+  ActiveSegments band_;  ///< includes one ghost layer
 };
 
 }  // namespace eulastic

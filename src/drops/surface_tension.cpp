@@ -38,13 +38,13 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SurfaceTension::add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+PetscErrorCode SurfaceTension::add_surface_energy(const FlowLook &bodies, SurfaceEnergy *measured,
                                                   std::vector<SurfaceSample> *) {
   const Domain &domain = flow_.domain;
   PetscFunctionBeginUser;
   WorkSpace::Lease lease;
   PetscCall(flow_.work.take("curvature", fields, &lease));
-  for (const Phase &phase : look.phases) {
+  for (const Phase &phase : bodies.phases) {
     const double sigma = phase.material.surface_tension;
     if (!is_on_grid(phase)) continue;
     PetscCall(capillary_.find(phase, lease.fields()));

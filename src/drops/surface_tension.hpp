@@ -1,4 +1,4 @@
-// Surface tension of all phases of the grid together; docs/method.md, section 17.
+// Surface tension of all phases on the grid; docs/method.md, section 17.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,16 +11,17 @@ namespace eulastic {
 class SurfaceTension final : public FlowPart {
 public:
   explicit SurfaceTension(Flow *flow) : flow_(*flow), capillary_(flow->domain, &flow->exchange) {}
+  /// Whether any phase on the grid has surface tension.
   static bool exists(const std::vector<Phase> &phases);
-  static constexpr int fields = CapillaryForce::work_fields;  ///< of the work space, during each call
+  static constexpr int fields = CapillaryForce::work_fields;  ///< components of the work space that each call uses
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  PetscErrorCode add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+  PetscErrorCode add_surface_energy(const FlowLook &bodies, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
 
-  /// force += scale sigma kappa grad(phi) at owned faces; with a factor also to `slope`. Five ghosts of phi.
-  /// `balanced`: less the mean over the box of what is added to `force`, in periodic directions where all drifts:
-  /// surfaces exert no net force, their discretisation does.
+  /// force += scale sigma kappa grad(phi) at owned faces; the force, times its factor, is also added to `slope`. Reads
+  /// five ghosts of phi. `balanced`: subtracts the mean over the box of what is added to `force`, if no wall resists
+  /// the flow. A closed surface exerts no net force, but its discretisation does.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
                            const WeightedTarget &slope = {});
 

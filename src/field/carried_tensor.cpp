@@ -15,7 +15,7 @@ const std::vector<TensorComponent> &tensor_components(int dimension, bool centre
 
 std::vector<TensorComponent> tensor_locations(int dimension) {
   const std::vector<TensorComponent> &all = tensor_components(dimension);
-  return {all.begin() + (dimension - 1), all.end()};  // the last diagonal one stands for the centres
+  return {all.begin() + (dimension - 1), all.end()};  // the last diagonal component represents the centres
 }
 
 Field tensor_at_rest(const Box &box) {

@@ -1,4 +1,4 @@
-// Extrapolation layer by layer: points of a layer take the mean of their face neighbours in the layers before.
+// Extrapolation layer by layer: the points of a layer take the mean of their face neighbours in lower layers.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,18 +11,18 @@
 
 namespace eulastic {
 
-/// A point of a layer, and which of its neighbours count.
+/// A point of a layer, and the neighbours that its mean contains.
 struct LayerPoint {
-  PetscInt offset;           ///< from the field's first double
-  unsigned char neighbours;  ///< neighbour_bits()
-  unsigned char lines;       ///< those of them with two points more behind: there the extrapolation is linear
+  PetscInt offset;           ///< offset from the first double of the field
+  unsigned char neighbours;  ///< see neighbour_bits()
+  unsigned char lines;       ///< neighbours with two more points behind them, from which the extrapolation is linear
   LayerPoint(std::ptrdiff_t at, unsigned from, unsigned along) noexcept
       : offset(static_cast<PetscInt>(at)),
         neighbours(static_cast<unsigned char>(from)),
         lines(static_cast<unsigned char>(along)) {}
 };
 
-/// Bits of the neighbours for which counts(step) holds: low x, high x, low y, high y, low z, high z.
+/// Returns the bits of the neighbours for which counts(step) is true: low x, high x, low y, high y, low z, high z.
 template <class Counts>
 unsigned neighbour_bits(int dimension, const std::ptrdiff_t *stride, const Counts &counts) {
   unsigned bits = 0;
@@ -39,8 +39,9 @@ inline double extrapolated(const double *b, std::ptrdiff_t step, bool linear) {
   return b[step] + kernels::minmod(b[step] - b[2 * step], b[2 * step] - b[3 * step]);
 }
 
-/// The mean over the neighbours of every point of a layer, of `Fields` components on the same points, `size` doubles
-/// apart from `values` on. Returns the flops: of n values one each, seven more of a line.
+/// Sets every point of piece `piece` of a layer to the mean over its neighbours, for `Fields` components at the same
+/// points, whose values are `size` doubles apart. Returns the flops: one per neighbour, and seven more for a linear
+/// extrapolation.
 template <int Fields>
 double extend_layer(const std::vector<LayerPoint> &points, Piece piece, int dimension, const std::ptrdiff_t *stride,
                     std::ptrdiff_t size, double *values) {
@@ -48,19 +49,19 @@ double extend_layer(const std::vector<LayerPoint> &points, Piece piece, int dime
   const std::ptrdiff_t slice = stride[dimension - 1];
   for (std::size_t n = piece.begin; n < piece.end; ++n) {
     const LayerPoint &point = points[n];
-    const double *later = values + points[std::min(n + 32, piece.end - 1)].offset;
+    const double *prefetched = values + points[std::min(n + 32, piece.end - 1)].offset;
     for (int f = 0; f < Fields; ++f)
-      for (const std::ptrdiff_t side : {-slice, slice}) __builtin_prefetch(later + f * size + side);
+      for (const std::ptrdiff_t side : {-slice, slice}) __builtin_prefetch(prefetched + f * size + side);
     double *b = values + point.offset;
     double sum[Fields] = {};
-    for (int d = 0; d < dimension; ++d) {  // the pair first: a mirrored scene gives the mirrored bits
+    for (int d = 0; d < dimension; ++d) {  // pairs first, so that a mirrored scene gives mirrored bits
       const unsigned pair = point.neighbours >> (2 * d), linear = point.lines >> (2 * d);
-      double both[Fields] = {};
+      double pair_sum[Fields] = {};
       if (pair & 1)
-        for (int f = 0; f < Fields; ++f) both[f] = extrapolated(b + f * size, -stride[d], linear & 1);
+        for (int f = 0; f < Fields; ++f) pair_sum[f] = extrapolated(b + f * size, -stride[d], linear & 1);
       if (pair & 2)
-        for (int f = 0; f < Fields; ++f) both[f] += extrapolated(b + f * size, stride[d], linear >> 1 & 1);
-      for (int f = 0; f < Fields; ++f) sum[f] += both[f];
+        for (int f = 0; f < Fields; ++f) pair_sum[f] += extrapolated(b + f * size, stride[d], linear >> 1 & 1);
+      for (int f = 0; f < Fields; ++f) sum[f] += pair_sum[f];
     }
     const int count = __builtin_popcount(point.neighbours);
     flops += count;

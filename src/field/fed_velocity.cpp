@@ -9,21 +9,21 @@ PetscErrorCode FedVelocity::copy(const Domain &domain, ConstView component, int 
   const int owner = domain.split().position_along(d, index), local = index - domain.layout().begin[d];
   int position;
   PetscFunctionBeginUser;
-  fed->lay_out(domain, d);
+  fed->resize(domain, d);
   PetscCallMPI(MPI_Comm_rank(line, &position));
-  if (position == owner) fed->take(component, local);
+  if (position == owner) fed->read(component, local);
   PetscCallMPI(MPI_Bcast(fed->values_.data(), static_cast<int>(fed->values_.size()), MPI_DOUBLE, owner, line));
   PetscFunctionReturn(0);
 }
 
 FedVelocity FedVelocity::of_faces(const Box &box, ConstView component, int d, int local) {
   FedVelocity fed;
-  fed.lay_out(box, d);
-  fed.take(component, local);
+  fed.resize(box, d);
+  fed.read(component, local);
   return fed;
 }
 
-void FedVelocity::lay_out(const Box &box, int d) {
+void FedVelocity::resize(const Box &box, int d) {
   const Plane plane(box.layout(), d);
   d_ = d;
   begin_ = plane.begin;
@@ -33,7 +33,7 @@ void FedVelocity::lay_out(const Box &box, int d) {
   values_.resize(count);
 }
 
-void FedVelocity::take(ConstView component, int local) {
+void FedVelocity::read(ConstView component, int local) {
   for_each([&](Int3 at, double &value) {
     at[d_] = local;
     value = component(at[0], at[1], at[2]);
@@ -41,7 +41,7 @@ void FedVelocity::take(ConstView component, int local) {
 }
 
 void FedVelocity::set_row(const Segment &row, View component) const {
-  for (int i = row.i_begin; i < row.i_end; ++i) component(i, row.j, row.k) = values_[place(i, row.j, row.k)];
+  for (int i = row.i_begin; i < row.i_end; ++i) component(i, row.j, row.k) = values_[index_of(i, row.j, row.k)];
 }
 
 }  // namespace eulastic

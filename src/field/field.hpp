@@ -1,9 +1,9 @@
 // A field on a box of cells: the components of a vector or tensor, or a group of scalars, in one allocation, component
 // after component, with ghosts.
 //
-// Which cells a rank has, which points its ghosts copy and what a global Vec looks like is the DMDA's (grid/domain.hpp,
-// field/ghost_exchange.hpp, field/global_vector.hpp). Only memory is laid out differently from a local Vec: rows are
-// padded to whole cache lines, as vector loads that cross lines would cost several per cent of a step.
+// The DMDA determines the cells of a rank, the points that ghosts copy, and global Vecs (grid/domain.hpp,
+// field/ghost_exchange.hpp, field/global_vector.hpp). The memory layout differs from a local Vec: rows are padded to
+// whole cache lines, because vector loads across cache lines would cost several per cent of a step.
 #pragma once
 
 #include "grid/box.hpp"
@@ -14,16 +14,17 @@
 
 namespace eulastic {
 
+/// Owns the memory of its components, except for parts and fields in memory of another owner.
 class Field {
 public:
   Field() = default;
   /// `count` components on `box`, all zero, 64-byte aligned.
   Field(const Box &box, int count);
-  /// The same, but 1 in the first `ones` components, and memory is taken as it is written: pages that are only read
-  /// take none. For fields that keep these values everywhere but near bodies.
+  /// Returns a field with the defaults 1 in the first `ones` components and 0 in the others, whose memory is allocated
+  /// on demand: pages that are only read take none. For fields that differ from their defaults only near bodies.
   static Field at_rest(const Box &box, int count, int ones = 0);
 
-  /// `count` components on `box` in memory that somebody else owns, with the values that it has.
+  /// Returns a field of `count` components on `box` in memory of another owner, with the values in that memory.
   static Field in_memory(const Box &box, int count, double *memory) noexcept;
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
@@ -31,10 +32,10 @@ public:
   const Layout &layout() const noexcept { return layout_; }
   double *data() noexcept { return data_.get(); }
   const double *data() const noexcept { return data_.get(); }
-  /// Memory that it owns: 0 for a part of another field.
+  /// Bytes that the field owns: 0 for a part of another field.
   std::size_t bytes() const noexcept { return data_.get_deleter().borrowed ? 0 : size() * sizeof(double); }
 
-  /// Component f.
+  /// Returns a view of component f.
   [[gnu::always_inline]] View operator[](int f) noexcept {
     return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz};
   }
@@ -42,38 +43,39 @@ public:
     return {data_.get() + f * layout_.size + layout_.origin, layout_.sy, layout_.sz};
   }
 
-  /// Sets component f to one value, ghosts and padding included.
+  /// Sets component f to one value, including ghosts and padding.
   void fill(int f, double value) noexcept;
   /// Sets all memory to 0.
   void clear() noexcept;
-  /// Components first ... first + count - 1 as a field that shares this one's memory and must not outlive it.
+  /// Returns components first ... first + count - 1 as a field that shares the memory of this one and must not outlive
+  /// it.
   Field part(int first, int count) noexcept;
-  /// Moves a field made by at_rest() to memory like that of other fields, which is allocated at once and faster.
+  /// Moves a field made by Field::at_rest() to memory that is allocated at once, with faster access.
   void leave_rest();
-  /// Makes this a copy of another field in memory of its own, of the same kind.
+  /// Makes this a copy of another field of the same kind, in memory of its own.
   void copy_from(const Field &other);
   void swap(Field &other) noexcept { std::swap(*this, other); }
 
 private:
-  struct Free {
+  struct Deleter {
     bool borrowed;
-    std::size_t mapped;  ///< bytes, 0: of the heap
+    std::size_t mapped;  ///< bytes of mapped memory; 0: allocated on the heap
     void operator()(double *p) const noexcept;
   };
-  using Memory = std::unique_ptr<double[], Free>;
+  using Memory = std::unique_ptr<double[], Deleter>;
   static Memory allocate(std::size_t values);
   static Memory allocate_at_rest(std::size_t values, std::size_t ones);
   void copy(const double *values, bool is_new);
   std::size_t size() const noexcept { return layout_.size * static_cast<std::size_t>(count_); }
   Layout layout_;
   int count_ = 0;
-  bool rests_ = false;  ///< made by at_rest()
-  int ones_ = 0;        ///< leading components that were 1 at first
+  bool on_demand_ = false;  ///< made by Field::at_rest()
+  int ones_ = 0;            ///< number of leading components whose default is 1
   Memory data_;
 };
 
-/// A field to which something is added `factor` times, as a force to the rate of momentum or to its change in time.
-/// Null: nowhere.
+/// A field to which a contribution is added with a factor, such as a force to the rate of momentum or to its change in
+/// time. Null: no field.
 struct WeightedTarget {
   Field *field = nullptr;
   double factor = 0;

@@ -8,11 +8,11 @@
 namespace eulastic {
 namespace {
 
-// Where a point lies in the memory of its owner.
+// Position of a point in the memory of its owner.
 struct Source {
-  PetscInt rank = -1;  // none: behind a side of the domain
+  PetscInt rank = -1;  // -1: no owner, the point is behind a boundary of the domain
   PetscInt offset = 0;
-  PetscInt size = 0, sy = 0, sz = 0;  // of the layout there
+  PetscInt size = 0, sy = 0, sz = 0;  // of the owner's memory layout
 };
 
 PetscErrorCode broadcast_sources(PetscSF scatter, const Source *owned, Source *copies) {
@@ -24,17 +24,19 @@ PetscErrorCode broadcast_sources(PetscSF scatter, const Source *owned, Source *c
   PetscFunctionReturn(0);
 }
 
-// Offset in a field of the first point in memory, where its first row begins.
-std::ptrdiff_t first_offset(const Layout &own) { return own.offset(-own.ghosts[0], -own.ghosts[1], -own.ghosts[2]); }
+// Offset of the first point in the memory of a field, where its first row begins.
+std::ptrdiff_t first_offset(const Layout &layout) {
+  return layout.offset(-layout.ghosts[0], -layout.ghosts[1], -layout.ghosts[2]);
+}
 
-// Whether no value has to come from elsewhere.
+// Whether no ghost has to be received.
 bool is_inside(const WantedGhosts &wanted) { return wanted.rows && wanted.rows->inside(); }
 
 }  // namespace
 
-// The scatter of the DMDA from owned to local points brings where the owned ones lie in memory. Where a rank is
-// narrower than the layers of ghosts, the stencil of the DMDA is, too; then the owner of the outermost ghost that is
-// known says where those beyond it lie.
+// Broadcasts the memory positions of owned points through the scatter of the DMDA. Where a rank is narrower than the
+// ghost width, so is the stencil of the DMDA. Then the owner of the outermost ghost inside the stencil provides the
+// positions of the ghosts beyond it, by a second broadcast.
 PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
   PetscInt first[3], points[3], near_first[3], near_points[3], width;
   VecScatter scatter;
@@ -44,20 +46,20 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
                                 &near_points[1], &near_points[2]));
   PetscCall(DMDAGetStencilWidth(domain.dm(), &width));
   PetscCall(DMDAGetScatter(domain.dm(), &scatter, nullptr));
-  const Layout &own = domain.layout();
-  const auto offset = [&own](const Int3 &p) { return static_cast<PetscInt>(own.offset(p[0], p[1], p[2])); };
-  Int3 n, near_begin, near_end, begin, end;  // of owned points, of those of the DMDA, and of all in memory
+  const Layout &layout = domain.layout();
+  const auto offset = [&layout](const Int3 &p) { return static_cast<PetscInt>(layout.offset(p[0], p[1], p[2])); };
+  Int3 n, near_begin, near_end, begin, end;  // of owned points, of points of the DMDA, and of all points in memory
   for (int d = 0; d < 3; ++d) {
     n[d] = static_cast<int>(points[d]);
     near_begin[d] = static_cast<int>(near_first[d] - first[d]);
     near_end[d] = near_begin[d] + static_cast<int>(near_points[d]);
-    begin[d] = -own.ghosts[d];
-    end[d] = n[d] + own.ghosts[d];
+    begin[d] = -layout.ghosts[d];
+    end[d] = n[d] + layout.ghosts[d];
   }
-  std::vector<Source> sources(own.size), owned, near(std::size_t(near_points[0]) * near_points[1] * near_points[2]);
+  std::vector<Source> sources(layout.size), owned, near(std::size_t(near_points[0]) * near_points[1] * near_points[2]);
   for_points({{0, 0, 0}, n}, [&](int i, int j, int k) {
-    owned.push_back({static_cast<PetscInt>(domain.rank()), offset({i, j, k}), static_cast<PetscInt>(own.size),
-                     static_cast<PetscInt>(own.sy), static_cast<PetscInt>(own.sz)});
+    owned.push_back({static_cast<PetscInt>(domain.rank()), offset({i, j, k}), static_cast<PetscInt>(layout.size),
+                     static_cast<PetscInt>(layout.sy), static_cast<PetscInt>(layout.sz)});
   });
   PetscCall(broadcast_sources(scatter, owned.data(), near.data()));
   auto next = near.begin();
@@ -67,19 +69,20 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
   std::vector<PetscSFNode> roots;
   for_points({begin, end}, [&](int i, int j, int k) {
     const Int3 p{i, j, k};
-    Int3 known;
-    for (int d = 0; d < 3; ++d) known[d] = std::clamp<int>(p[d], -width, n[d] + width - 1);
-    const Source &source = sources[offset(known)];
-    if (known == p || source.rank < 0) return;
+    Int3 inner_point;
+    for (int d = 0; d < 3; ++d) inner_point[d] = std::clamp<int>(p[d], -width, n[d] + width - 1);
+    const Source &source = sources[offset(inner_point)];
+    if (inner_point == p || source.rank < 0) return;
     leaves.push_back(offset(p));
-    roots.push_back({source.rank, source.offset + (p[0] - known[0]) + (p[1] - known[1]) * source.sy +
-                                      (p[2] - known[2]) * source.sz});
+    roots.push_back({source.rank, source.offset + (p[0] - inner_point[0]) + (p[1] - inner_point[1]) * source.sy +
+                                      (p[2] - inner_point[2]) * source.sz});
   });
-  SfHandle beyond;
-  PetscCall(PetscSFCreate(domain.comm(), beyond.put()));
-  PetscCall(PetscSFSetGraph(beyond.get(), static_cast<PetscInt>(own.size), static_cast<PetscInt>(leaves.size()),
-                            leaves.data(), PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
-  PetscCall(broadcast_sources(beyond.get(), sources.data(), sources.data()));
+  SfHandle outer_ghosts;
+  PetscCall(PetscSFCreate(domain.comm(), outer_ghosts.put()));
+  PetscCall(PetscSFSetGraph(outer_ghosts.get(), static_cast<PetscInt>(layout.size),
+                            static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES, roots.data(),
+                            PETSC_COPY_VALUES));
+  PetscCall(broadcast_sources(outer_ghosts.get(), sources.data(), sources.data()));
 
   for_points({begin, end}, [&](int i, int j, int k) {
     const Int3 p{i, j, k};
@@ -90,35 +93,36 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
   PetscFunctionReturn(0);
 }
 
-// Leaves and roots are the values of all components of a field, or whole rows where x is not split.
+// Leaves and roots are single values of all components of a field, or whole rows where x is not split.
 PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) {
   PetscFunctionBeginUser;
   if (!ghosts_) PetscCall(find_(&ghosts_.emplace()));
-  const Layout &own = box_->layout();
+  const Layout &layout = box_->layout();
   const bool whole_rows = box_->whole_rows();
-  const std::ptrdiff_t unit = whole_rows ? own.sy : 1;
+  const std::ptrdiff_t unit = whole_rows ? layout.sy : 1;
   const auto wanted = [&](const Int3 &at) {
     for (int d = whole_rows ? 1 : 0; d < 3; ++d)
-      if (at[d] < -width || at[d] >= own.cells[d] + width) return false;
+      if (at[d] < -width || at[d] >= layout.cells[d] + width) return false;
     return !whole_rows || at[0] == 0;
   };
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
-  // The unit with the point at an offset of field f. Fields are whole rows, and all ranks have rows of one length where
-  // units are rows.
+  // Returns the unit that contains the point at an offset of component f. Fields consist of whole rows, and where units
+  // are rows, these have the same length on all ranks.
   const auto unit_of = [&](std::ptrdiff_t field_size, int f, std::ptrdiff_t offset) {
-    return static_cast<PetscInt>((f * field_size + offset - first_offset(own)) / unit);
+    return static_cast<PetscInt>((f * field_size + offset - first_offset(layout)) / unit);
   };
   for (int f = 0; f < fields; ++f)
     for (const Ghost &ghost : *ghosts_)
       if (wanted(ghost.at)) {
-        leaves.push_back(unit_of(own.size, f, own.offset(ghost.at[0], ghost.at[1], ghost.at[2])));
+        leaves.push_back(unit_of(layout.size, f, layout.offset(ghost.at[0], ghost.at[1], ghost.at[2])));
         roots.push_back({ghost.owner, unit_of(ghost.size, f, ghost.offset)});
       }
   PetscCall(PetscSFCreate(comm_, sf));
   PetscCall(PetscSFSetFromOptions(*sf));
   PetscInt count;
-  PetscCall(PetscIntCast(static_cast<PetscInt64>(fields) * own.size / unit, &count));  // an error where it has no room
+  // an error if the number exceeds PetscInt
+  PetscCall(PetscIntCast(static_cast<PetscInt64>(fields) * layout.size / unit, &count));
   PetscCall(PetscSFSetGraph(*sf, count, static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES,
                             roots.data(), PETSC_COPY_VALUES));
   PetscCall(PetscSFSetUp(*sf));
@@ -158,7 +162,7 @@ PetscErrorCode GhostExchange::end_update(const WantedGhosts &wanted) {
 
 PetscErrorCode GhostExchange::update_ghosts(const std::vector<WantedGhosts> &wanted) {
   PetscFunctionBeginUser;
-  constexpr int most = 6;  // fields: each of them that is under way has buffers of its own, for good
+  constexpr int most = 6;  // components: every field under way keeps buffers of its own for the rest of the run
   for (auto first = wanted.begin(), last = first; first != wanted.end();) {
     for (int fields = 0; last != wanted.end() && (fields == 0 || fields + last->field->count() <= most); ++last) {
       fields += last->field->count();
@@ -176,14 +180,14 @@ PetscErrorCode GhostExchange::update_ghosts(Field &field, int width, const Occup
   PetscFunctionReturn(0);
 }
 
-// Both ends of rows whose x wraps around. Rows behind walls are left alone: what is there must not depend on whether x
-// is split.
+// Fills both ends of rows if x is periodic and not split. Rows behind walls are not changed: their values must not
+// depend on whether x is split.
 void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
-  constexpr int ahead = 8;  // rows: their ends are too far apart for processors to foresee them
+  constexpr int ahead = 8;  // rows: hardware prefetchers do not detect accesses to the ends of rows
   if (!box_->wraps_x() || !wanted.row_ends) return;
   Field &field = *wanted.field;
-  const Layout &own = field.layout();
-  const int n = own.cells[0], width = std::min(wanted.width, own.ghosts[0]), parts = row_parts(*box_);
+  const Layout &layout = field.layout();
+  const int n = layout.cells[0], width = std::min(wanted.width, layout.ghosts[0]), parts = row_parts(*box_);
   const int layers = is_inside(wanted) ? 0 : width;
   const Box::Range y = box_->points_near(1, true, layers), z = box_->points_near(2, true, layers);
   in_parallel(parts, parts, [&](int part) {
@@ -196,7 +200,7 @@ void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
             if (span.begin >= span.end || (span.begin >= width && span.end <= n - width)) continue;
           }
           double *row = field[f].row(j, k);
-          const double *later = row + ahead * own.sy;
+          const double *later = row + ahead * layout.sy;
           for (const int i : {-1, 0, n - 1, n}) __builtin_prefetch(later + i, 1);
           for (int m = 1; m <= width; ++m) {
             row[-m] = row[n - m];

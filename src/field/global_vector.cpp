@@ -5,7 +5,7 @@
 namespace eulastic {
 namespace {
 
-// The rows of this rank in the order in which a global Vec of a DMDA holds them, in local indices.
+// Lists the rows of this rank in the order of a global Vec of a DMDA, in local indices.
 PetscErrorCode rows_of(const Domain &domain, Vec vector, std::vector<Segment> *rows) {
   DM dm;
   PetscInt first[3], count[3];

@@ -1,4 +1,4 @@
-// A field as a global Vec of a DMDA, for PETSc's solvers and viewers.
+// Copies between fields and global Vecs of a DMDA, for PETSc's solvers and viewers.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -6,10 +6,10 @@
 
 namespace eulastic {
 
-/// Copies the owned values of a field, row by row, to a global Vec: of Domain::dm(), which has the points of faces on
-/// high sides, or of a DMDA that Domain::create_cell_dm has made, which has the cells alone.
+/// Copies the owned values of a field to a global Vec of Domain::dm(), which includes the faces on high boundaries, or
+/// of a DMDA made by Domain::create_cell_dm(), which has only the cells.
 PetscErrorCode to_global(const Domain &domain, ConstView field, Vec vector);
-/// The same back; ghosts are not touched.
+/// Copies a global Vec to the owned values of a field; ghosts do not change.
 PetscErrorCode from_global(const Domain &domain, Vec vector, View field);
 
 }  // namespace eulastic

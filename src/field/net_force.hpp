@@ -1,5 +1,5 @@
-// Forces of surfaces add up to nothing; their discretisation does within its error, and where no wall holds the fluid
-// that would move all of it for ever. docs/method.md, section 17.
+// The net force of surfaces, which is zero except for discretisation errors. Without walls the error would accelerate
+// the whole fluid, so that the mean is subtracted (docs/method.md, section 17).
 #pragma once
 
 #include "base/exact_sum.hpp"
@@ -10,24 +10,25 @@
 
 namespace eulastic {
 
-/// n values to a force, and `factor` times them to its change in time, where there is one.
+/// Adds n values to a row of a force, and `factor` times these values to its change in time unless `slope` is null.
 void add_force_row(int n, const double *added, double factor, double *force, double *slope);
 
-/// force -= mean on all owned faces.
+/// Subtracts `mean` from the force on all owned faces.
 void take_off_mean(const Box &box, const Real3 &mean, Field &force);
 
-/// The sum over all faces of what is added to a force. Exact: the same bits on any ranks.
+/// The exact sum over all faces of the contributions to a force, with the same bits on any number of ranks.
 class NetForce {
 public:
-  /// Not `wanted`: does nothing.
+  /// If not `wanted`, all functions do nothing.
   NetForce(const Domain &domain, bool wanted);
-  /// Row of component d that part `part` of row_parts(box), or a member of a team, has added on the faces of a block.
+  /// Adds a row of contributions to component d on the faces of a block; called by part `part` of row_parts(box) or by
+  /// a member of a team.
   void add_row(const Box &box, int part, int d, const double *added) {
     if (!sums_.empty()) sums_[TeamMember::number() + part].add_row(d, added, box.cells()[0], box.layout().begin[0]);
   }
-  /// Its mean in periodic directions, 0 in others. Collective.
+  /// Returns the mean force in periodic directions, 0 in the others. Collective.
   PetscErrorCode find_mean(Real3 *mean);
-  /// Takes it off. Collective.
+  /// Subtracts the mean from the force. Collective.
   PetscErrorCode take_off(Field &force);
 
 private:

@@ -7,7 +7,8 @@
 #include <cmath>
 
 namespace eulastic {
-// Periodic images included; what lies behind other sides is nobody's.
+// Ghosts across periodic boundaries have the profile of their image; ghosts behind other boundaries that of the nearest
+// cell.
 double inflow_shape(const Box &box, const Side &side, int d, const Int3 &local) {
   if (!side.profile || side.profile->empty()) return 1;
   std::size_t place = 0;
@@ -68,9 +69,9 @@ void fill_ghosts_of_given_pressure(const Box &box, const BoxSides &sides, double
     const double sign = high ? -1 : 1;
     for_points(box.cells_at(d, high, 1), [&](int i, int j, int k) {
       const double inward = sign * (&normal(i, j, k))[to_face];
-      const double back = outflow && inward > 0 ? 0.5 * density * (inward * inward) : 0;
+      const double dynamic_pressure = outflow && inward > 0 ? 0.5 * density * (inward * inward) : 0;
       double *p = &pressure(i, j, k);
-      p[outward] = 2 * (given - back) - p[0];
+      p[outward] = 2 * (given - dynamic_pressure) - p[0];
     });
   }
 }

@@ -1,39 +1,42 @@
-// Sides that volume crosses: what comes in through an inflow side, and the pressure on open ones (docs/method.md,
-// section 20). All that other rooms need of them beyond the ghosts of sides.hpp.
+// Boundaries that fluid crosses: the velocity on inflow boundaries and the pressure on open ones (docs/method.md,
+// section 20), except for the velocity ghosts, which sides.hpp fills.
 #pragma once
 
 #include "field/sides.hpp"
 
 namespace eulastic {
 
-/// Velocity component d on an inflow side of direction d at `time`, ghosts of the other directions included.
+/// Sets velocity component d on the inflow boundaries of direction d at `time`, including ghosts of the other
+/// directions.
 void set_inflow_faces(const Box &box, const BoxSides &sides, double time, View component, int d);
-/// The same on the points of one row that lie on one side: `given` times the profile, into the box.
+/// Sets the points of one row that lie on one boundary to `given` times the profile, directed into the box.
 void set_inflow_row(const Box &box, const Side &side, int d, bool high, double given, Segment row, View component);
 
-/// The profile of a side at a local cell of its plane, ghosts too.
+/// Returns the profile of a boundary at a local cell of its plane, which may be a ghost.
 double inflow_shape(const Box &box, const Side &side, int d, const Int3 &local);
 
-/// One ghost layer, or `width`, of what is proportional to a pressure that is 0 on open sides: odd there, even behind
-/// others.
+/// Fills `width` ghost layers of a pressure increment, which is 0 on open boundaries: odd reflection there, even
+/// reflection behind other boundaries.
 void fill_ghosts_of_increment(const Box &box, View field, int width);
-/// One ghost layer of the pressure behind open sides, so that its mean with the one before the side is what is given at
-/// `time`. `velocity`: on the sides, for what flows back in through an outflow side.
+/// Fills one ghost layer of the pressure behind open boundaries, so that its mean with the pressure in the cell before
+/// the boundary is the given pressure at `time`. `velocity` must be valid on the boundaries; it determines the pressure
+/// of backflow through outflow boundaries.
 void fill_ghosts_of_given_pressure(const Box &box, const BoxSides &sides, double time, double density,
                                    const Field &velocity, View pressure);
-/// 0 in `width` ghost layers behind open sides.
+/// Sets `width` ghost layers behind open boundaries to 0.
 void clear_open_ghosts(const Box &box, View field, int width);
 
-/// Whether volume crosses any side, and whether the pressure is given on any.
+/// Whether fluid crosses any boundary.
 bool volume_crosses(const BoxSides &sides);
+/// Whether the pressure is given on any boundary.
 bool opens(const BoxSides &sides);
-/// Whether a stretch of the domain feeds any side with its flow and its bodies (openings/feeders.hpp).
+/// Whether any boundary has an inlet generator (openings/feeders.hpp).
 bool has_feeders(const BoxSides &sides);
 
-/// The largest difference of given pressures along each direction per length and density: what it does to a fluid at
-/// rest, a force per mass.
+/// Returns the largest difference of given pressures along each direction, divided by length and density: the force per
+/// mass on a fluid at rest.
 Real3 pressure_drive(const BoxSides &sides, const Real3 &length, double density);
-/// The largest velocity given on any inflow side along each direction.
+/// Returns the largest velocity given on any inflow boundary along each direction.
 Real3 inflow_speed(const BoxSides &sides);
 
 }  // namespace eulastic

@@ -27,9 +27,9 @@ Segment Phase::filled(const Segment &row) const {
 Extent Phase::extent(const Box &box) const {
   Extent extent{box.cells(), {0, 0, 0}};
   for (const Segment &row : box.rows()) {
-    const Segment held = filled(row);
-    if (held.size() == 0) continue;
-    const Int3 first{held.i_begin, row.j, row.k}, end{held.i_end, row.j + 1, row.k + 1};
+    const Segment occupied = filled(row);
+    if (occupied.size() == 0) continue;
+    const Int3 first{occupied.i_begin, row.j, row.k}, end{occupied.i_end, row.j + 1, row.k + 1};
     for (int d = 0; d < 3; ++d) {
       extent.begin[d] = std::min(extent.begin[d], first[d]);
       extent.end[d] = std::max(extent.end[d], end[d]);
@@ -39,11 +39,11 @@ Extent Phase::extent(const Box &box) const {
 }
 
 Box Phase::block(const Box &box, int before, int behind) const {
-  const Extent held = extent(box);
+  const Extent occupied = extent(box);
   Int3 begin = box.layout().begin, cells = box.cells();
   for (int d = 0; d < box.dimension(); ++d) {
-    const int first = std::max(held.begin[d] - before, 0);
-    cells[d] = std::min(held.end[d] + behind, cells[d]) - first;
+    const int first = std::max(occupied.begin[d] - before, 0);
+    cells[d] = std::min(occupied.end[d] + behind, cells[d]) - first;
     begin[d] += first;
   }
   return Box(box.domain_shape(), begin, cells, 0);

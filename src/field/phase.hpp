@@ -1,6 +1,6 @@
-// A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor. A species has one on
-// the grid. Where its bodies lie in boxes of their own (boxes/free_bodies.hpp), each of them is a phase, and that of
-// the species is empty.
+// A phase: bodies of one material that share one solid fraction and one left Cauchy-Green tensor. A species has one
+// phase on the grid. If its bodies are stored in boxes of their own (boxes/free_bodies.hpp), each of them is a phase,
+// and the phase on the grid is empty.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -17,53 +17,54 @@
 
 namespace eulastic {
 
+/// The state of a phase on this rank.
 struct Phase {
-  std::string species;  ///< name of the species it belongs to
+  std::string species;  ///< name of the species to which it belongs
   Material material;
-  bool boxed = false;    ///< its bodies lie in boxes of their own
-  bool travels = false;  ///< its bodies are rigid, and go through the grid or turn in it
-  Field fraction;        ///< phi, one centred field, 0 ... 1
-  OccupiedRows rows;     ///< of phi; once they are known the tensor is I in all others
+  bool boxed = false;    ///< its bodies are stored in boxes of their own
+  bool travels = false;  ///< its bodies are rigid and move or rotate through the grid
+  Field fraction;        ///< phi, one field at centres, 0 ... 1
+  OccupiedRows rows;     ///< rows of phi; the tensor is I outside their spans
   CarriedTensor tensor;  ///< B
-  Field label;           ///< body label at centres, 0 = none, else 1 + global body index; held as double, exact
+  Field label;           ///< label of the body at centres: 0 = none, else 1 + global body index, an exact integer
 
-  /// Of what it has on this rank; nobody writes to the grid for bodies in boxes, nor to B that is not carried.
+  /// Bytes of the fields on this rank. Pages of the grid that are never written, as for bodies in boxes, do not count.
   std::size_t bytes() const;
-  /// No body: phi = 0, B = I, labels (where wanted) 0, in memory that follows the bodies (Field::at_rest).
+  /// Makes a phase without bodies: phi = 0, B = I, labels (if `labels`) 0, in memory on demand (Field::at_rest).
   void empty(const Box &box, bool labels);
-  /// The least block of cells that has all in which phi is not 0; `box`: whole on this rank.
+  /// Returns the smallest block of cells that contains all cells with phi > 0. `box` must be complete on this rank.
   Extent extent(const Box &box) const;
-  /// The cells of extent() with so many before and behind them, as far as `box` has them; without ghosts.
+  /// Returns the block of extent() extended by `before` and `behind` cells, within `box`; without ghosts.
   Box block(const Box &box, int before, int behind) const;
-  /// Of a row of cells, the least that has all in which phi is not 0.
+  /// Returns the smallest part of a row of cells that contains all cells with phi > 0.
   Segment filled(const Segment &row) const;
-  /// What transport() needs to go on from there.
+  /// Copies the fields that the next transport needs.
   void copy_from(const Phase &other);
 };
 
-/// Local indices in `box` of the first cell of a block that lies in it.
+/// Returns the local indices in `box` of the first cell of a block inside it.
 Int3 first_in(const Box &box, const Box &block);
 
-/// A body in a box of its own, which is whole on this rank, as those see it who measure.
+/// A body in a box of its own, which is complete on this rank, as measures access it.
 struct BodyInBox {
-  int number;   ///< its label
-  int species;  ///< index
+  int number;   ///< label of the body
+  int species;  ///< index of the species
   const Box *box;
-  const Phase *phase;                         ///< of this body alone
-  const std::vector<SurfaceMarker> *markers;  ///< of a membrane
-  const Field *velocity = nullptr;            ///< on the faces of the box, where it is wanted
+  const Phase *phase;                         ///< phase that contains only this body
+  const std::vector<SurfaceMarker> *markers;  ///< markers of a membrane
+  const Field *velocity = nullptr;            ///< on the faces of the box; null if not needed
 };
 
+/// Box, boundaries and ghost exchange of a phase.
 struct PhasePlace {
   const Box *box;
   const BoxSides *sides;
-  /// Null where the box is whole on this rank: its ghosts are behind sides of the domain, or hold what is far from
-  /// bodies.
+  /// Null if the box is complete on this rank: its ghosts are behind boundaries of the domain, or far from bodies.
   GhostExchange *exchange;
 
-  /// Ghosts that other ranks own; `rows` as in WantedGhosts.
+  /// Updates ghosts that other ranks own; `rows` as in WantedGhosts.
   PetscErrorCode exchange_ghosts(Field &field, int width, const OccupiedRows *rows) const;
-  /// Ghosts of B from other ranks and behind sides.
+  /// Updates ghosts of B, from other ranks and behind boundaries.
   PetscErrorCode update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const;
 };
 

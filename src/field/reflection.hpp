@@ -1,4 +1,4 @@
-// Ghosts behind one side of the box as an image of what is before it; for the files of this room.
+// Fills the ghosts behind one boundary by reflection; used by the boundary conditions of this folder.
 #pragma once
 
 #include "field/field.hpp"
@@ -6,7 +6,7 @@
 
 namespace eulastic {
 
-/// The plane 0 of direction d, ghosts of the other directions included.
+/// The plane 0 of direction d, including ghosts of the other directions.
 struct Plane {
   Int3 begin{}, end{};
   Plane(const Layout &layout, int d) {
@@ -17,14 +17,16 @@ struct Plane {
   }
 };
 
-/// One side of one direction: q(ghost m) = twice_wall + sign q(mirror image), m = 1 ... width, or as far as there is
-/// memory behind a neighbour's wall. Runs over all ghosts of the other directions, so that doing the directions in turn
-/// fills edges and corners.
+/// The rule of a reflection: q(ghost m) = twice_wall + sign q(mirror image), m = 1 ... width, or as far as there is
+/// memory behind a boundary that another rank touches. It is applied to all ghosts of the other directions, so that
+/// edges and corners are filled when all directions are processed in turn.
 struct Reflection {
   double sign, twice_wall;
-  bool about_face = false;  ///< of a staggered field: twice what is on the face in place of twice_wall
+  bool about_face = false;  ///< for a staggered field: the value on the face replaces half of twice_wall
 };
 
+/// Applies `rule` to field q behind the low or high boundary of direction d. Rows that `rows` marks as idle are
+/// skipped.
 void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflection rule, int width,
              const OccupiedRows *rows = nullptr);
 

@@ -9,18 +9,19 @@
 namespace eulastic {
 namespace {
 
-double turn_velocity(const Real3 &w, const Real3 &r, int a) {
+double rotation_velocity(const Real3 &w, const Real3 &r, int a) {
   const int b = (a + 1) % 3, c = (a + 2) % 3;
   return w[b] * r[c] - w[c] * r[b];
 }
 
 Real3 cross(const Real3 &w, const Real3 &r) {
-  return {turn_velocity(w, r, 0), turn_velocity(w, r, 1), turn_velocity(w, r, 2)};
+  return {rotation_velocity(w, r, 0), rotation_velocity(w, r, 1), rotation_velocity(w, r, 2)};
 }
 
 }  // namespace
 
-// sum of (neighbour - u)/(length spacing); `wall`: the velocity of the surface on links that end there.
+// Returns the sum of (neighbour - u)/(length spacing) over the links; `wall`: the velocity of the surface on links that
+// end there.
 double RigidFaces::Cut::laplacian(const double *u, const std::array<std::ptrdiff_t, 3> &stride, int dimension,
                                   const double *wall) const {
   const double middle = u[0];
@@ -37,8 +38,8 @@ Real3 RigidMotion::frame_velocity(const Real3 &r, double time) const {
   Real3 v{};
   for (int d = 0; d < 3; ++d) v[d] = travelling[d] ? velocity[d] * of_velocity.at(time) : 0;
   if (!turning) return v;
-  const Real3 w = turned_by(of_rotation.at(time));
-  for (int d = 0; d < 3; ++d) v[d] += turn_velocity(w, r, d);
+  const Real3 w = rotation_vector(of_rotation.at(time));
+  for (int d = 0; d < 3; ++d) v[d] += rotation_velocity(w, r, d);
   return v;
 }
 
@@ -46,9 +47,9 @@ Real3 RigidMotion::acceleration(const Real3 &r, double time) const {
   Real3 a{};
   for (int d = 0; d < 3; ++d) a[d] = travelling[d] ? velocity[d] * of_velocity.rate(time) : 0;
   if (!turning) return a;
-  const Real3 w = turned_by(of_rotation.at(time)), faster = cross(turned_by(of_rotation.rate(time)), r),
-              inwards = cross(w, cross(w, r));
-  for (int d = 0; d < 3; ++d) a[d] += faster[d] + inwards[d];
+  const Real3 w = rotation_vector(of_rotation.at(time)), euler = cross(rotation_vector(of_rotation.rate(time)), r),
+              centripetal = cross(w, cross(w, r));
+  for (int d = 0; d < 3; ++d) a[d] += euler[d] + centripetal[d];
   return a;
 }
 
@@ -59,27 +60,28 @@ double RigidMass::dissipation(const RigidMotion &motion, int dimension) const {
          6 * square(motion.angular_velocity) * volume;
 }
 
-// Integrals of the acceleration over the body.
+// Integrates the acceleration over the body.
 Real3 RigidMass::force(const RigidMotion &motion, double time, double density) const {
-  const Real3 a = motion.acceleration({}, time), w = motion.turned_by(motion.of_rotation.at(time)),
-              faster = cross(motion.turned_by(motion.of_rotation.rate(time)), first),
-              inwards = cross(w, cross(w, first));
+  const Real3 a = motion.acceleration({}, time), w = motion.rotation_vector(motion.of_rotation.at(time)),
+              euler = cross(motion.rotation_vector(motion.of_rotation.rate(time)), first),
+              centripetal = cross(w, cross(w, first));
   Real3 sum{};
-  for (int d = 0; d < 3; ++d) sum[d] = density * volume * a[d] + density * (faster[d] + inwards[d]);
+  for (int d = 0; d < 3; ++d) sum[d] = density * volume * a[d] + density * (euler[d] + centripetal[d]);
   return sum;
 }
 
-// With S the second moments and J = tr S - S: first x a + J dw/dt + w x J w.
+// With the second moments S and J = tr S - S: first x a + J dw/dt + w x J w.
 Real3 RigidMass::torque(const RigidMotion &motion, double time, double density) const {
   const auto &[xx, yy, zz, yz, xz, xy] = second;
   const auto inertia = [&, xx = xx, yy = yy, zz = zz, yz = yz, xz = xz, xy = xy](const Real3 &w) {
     return Real3{(yy + zz) * w[0] - xy * w[1] - xz * w[2], (xx + zz) * w[1] - xy * w[0] - yz * w[2],
                  (xx + yy) * w[2] - xz * w[0] - yz * w[1]};
   };
-  const Real3 w = motion.turned_by(motion.of_rotation.at(time)), arms = cross(first, motion.acceleration({}, time)),
-              faster = inertia(motion.turned_by(motion.of_rotation.rate(time))), gyration = cross(w, inertia(w));
+  const Real3 w = motion.rotation_vector(motion.of_rotation.at(time)),
+              arms = cross(first, motion.acceleration({}, time)),
+              euler = inertia(motion.rotation_vector(motion.of_rotation.rate(time))), gyration = cross(w, inertia(w));
   Real3 sum{};
-  for (int d = 0; d < 3; ++d) sum[d] = density * (arms[d] + faster[d] + gyration[d]);
+  for (int d = 0; d < 3; ++d) sum[d] = density * (arms[d] + euler[d] + gyration[d]);
   return sum;
 }
 
@@ -93,7 +95,7 @@ double RigidFaces::velocity(int a, const RigidBody &body, const Real3 &place, co
                             double of_rotation) const {
   const RigidMotion &motion = motions[body.motion];
   return motion.velocity[a] * of_velocity +
-         turn_velocity(motion.angular_velocity, arm(body, place, spacing), a) * of_rotation;
+         rotation_velocity(motion.angular_velocity, arm(body, place, spacing), a) * of_rotation;
 }
 
 double RigidFaces::shortest_period() const {

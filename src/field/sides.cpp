@@ -15,13 +15,14 @@ namespace eulastic {
 void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflection rule, int width,
              const OccupiedRows *rows) {
   const std::ptrdiff_t s = q.stride(d);
-  const Layout &own = box.layout();
-  const int last = (high ? box.domain_cells()[d] - 1 : 0) - own.begin[d];  // before the wall
-  width = std::min(width, own.ghosts[d] + (high ? own.cells[d] - 1 - last : last));
+  const Layout &layout = box.layout();
+  const int last =
+      (high ? box.domain_cells()[d] - 1 : 0) - layout.begin[d];  // index of the last cell before the boundary
+  width = std::min(width, layout.ghosts[d] + (high ? layout.cells[d] - 1 - last : last));
   if (width <= 0) return;
-  const Plane plane(own, d);
+  const Plane plane(layout, d);
   const std::ptrdiff_t step = high ? s : -s;                                    // outward
-  const std::ptrdiff_t wall = high || !staggered ? last * s + step : last * s;  // first point on or behind the wall
+  const std::ptrdiff_t wall = high || !staggered ? last * s + step : last * s;  // first point on or behind the boundary
   const std::ptrdiff_t mirror = staggered ? 0 : -step;                          // mirror image of that point
   const int from = plane.begin[0], to = plane.end[0], first = staggered ? 1 : 0;
   const auto reflect_row = [=](double *row) {
@@ -40,7 +41,7 @@ void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflectio
     for (std::size_t line = piece.begin; line < piece.end; ++line) {
       const int j = low_j + static_cast<int>(line % lines), k = low_k + static_cast<int>(line / lines);
       if (rows && rows->idle(d == 1 ? last : j, d == 2 ? last : k)) continue;
-      if (d == 1)  // rows a plane apart, which processors do not foresee
+      if (d == 1)  // hardware prefetchers do not detect rows a plane apart
         for (int m = first; m < first + width; ++m)
           for (const std::ptrdiff_t at : {mirror - m * step, m * step})
             prefetch(q.row(j, k + ahead) + wall + at + from, to - from);
@@ -51,8 +52,8 @@ void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflectio
 
 namespace {
 
-// The points on one side of a field that is staggered in d, also where they are this rank's ghosts, are 0. What rests
-// is left alone (Field::at_rest).
+// Sets the points on one boundary of a field that is staggered in d to 0, also where they are ghosts of this rank.
+// Zeros are not written, so that pages on demand stay unallocated (Field::at_rest).
 void clear_face(const Box &box, View q, int d, bool high) {
   const Layout &layout = box.layout();
   const Plane plane(layout, d);
@@ -96,7 +97,7 @@ void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double tim
       set_inflow_faces(box, sides, time, velocity[c], c);
     }
     for (int e = 0; e < dimension; ++e) {
-      const int d = (c + e) % dimension;  // the normal direction first: a rotated scene has rotated corners
+      const int d = (c + e) % dimension;  // the normal direction first, so that a rotated scene has rotated corners
       for (const bool high : {false, true}) {
         if (!box.touches(d, high)) continue;
         const Side &side = sides[d][high];

@@ -1,11 +1,12 @@
-// What happens at the faces of the box, and the ghosts behind them.
+// Boundary conditions at the six faces of the box, and the ghosts behind them.
 //
-// Solid fraction and everything centred reflect evenly. Normal velocity is 0 on a wall or a plane of symmetry and
-// reflects oddly; it is given on an inflow side and reflects oddly about that; on open sides (pressure and outflow) it
-// is an unknown, and all of the velocity reflects evenly. The pressure is open_sides.hpp's there. Wall: the tangential
-// velocity reflects oddly about the wall's; tensor components that live on the wall itself (edges) are evolved there
-// and reflect evenly about it. Symmetry: what is behind is the mirror image, so the tangential velocity reflects
-// evenly, and tensor components on the plane are 0 and reflect oddly.
+// Solid fraction and all fields at centres are reflected evenly. The normal velocity is 0 on a wall or a plane of
+// symmetry and reflected oddly; on an inflow boundary it is given and reflected oddly about that value; on open
+// boundaries (pressure and outflow) it is an unknown, and the whole velocity is reflected evenly (for the pressure see
+// open_sides.hpp). Behind a wall the tangential velocity is reflected oddly about the velocity of the wall; tensor
+// components on the wall itself (edges) are evolved there and reflected evenly. A plane of symmetry has the mirror
+// image behind it: the tangential velocity is reflected evenly, tensor components on the plane are 0 and reflected
+// oddly.
 #pragma once
 
 #include "field/field.hpp"
@@ -16,68 +17,72 @@
 
 namespace eulastic {
 
-/// Velocity U cos(frequency t + phase) of one wall; its normal component must be 0.
+/// Velocity U cos(frequency t + phase) of one wall. Its normal component must be 0.
 struct WallMotion {
   Real3 velocity{};      ///< length / time
   double frequency = 0;  ///< angular, 1 / time
   double phase = 0;      ///< rad
   Real3 at(double time) const;
-  double speed() const;  ///< largest |U|
+  double speed() const;  ///< |U|
 };
 
+/// The kind of a boundary condition.
 enum class SideKind : unsigned char { wall, symmetry, inflow, pressure, outflow };
-/// Whether the pressure is given there, so that volume may cross it either way.
+/// Whether the pressure is given, so that fluid may cross the boundary in either direction.
 constexpr bool is_open(SideKind kind) { return kind == SideKind::pressure || kind == SideKind::outflow; }
-/// Whether it ends the fluid for bodies: nothing of them is behind it, and they do not come out.
+/// Whether bodies end at the boundary: phi behind it is 0, and bodies do not leave through it.
 constexpr bool is_solid(SideKind kind) { return kind == SideKind::wall || kind == SideKind::inflow; }
 constexpr bool volume_crosses(SideKind kind) { return is_open(kind) || kind == SideKind::inflow; }
 
-/// Shape of the velocity on an inflow side, over all its cells, x before y before z; empty: 1 everywhere.
+/// Shape of the velocity on an inflow boundary, for all its cells, x before y before z; empty: 1 everywhere.
 using SideProfile = std::vector<double>;
 
 class FedVelocity;
 
-/// What is behind a pressure side: p = given + resistance Q + p_c, capacity dp_c/dt = Q - p_c/drain, Q what leaves.
+/// A load behind a pressure boundary: p = given + resistance Q + p_c, capacity dp_c/dt = Q - p_c/drain, with the flow
+/// rate Q out of the box.
 struct OutletLoad {
   double resistance = 0, capacity = 0, drain = 0;
-  double charge = 0;  ///< pressure of the capacity at t = 0
+  double charge = 0;  ///< p_c at t = 0
   bool exists() const { return resistance > 0 || capacity > 0; }
 };
 
+/// The boundary condition on one face of the box.
 struct Side {
   SideKind kind = SideKind::wall;
-  WallMotion motion;                           ///< of a wall
-  TimeCourse given;                            ///< inflow: what the profile is multiplied by; pressure: the pressure
-  std::shared_ptr<const SideProfile> profile;  ///< of an inflow side
-  int feeder = 0;                              ///< cells of the stretch beside an inflow side that feeds it; 0: none
-  std::shared_ptr<const FedVelocity> fed;      ///< what it gave last, in place of given times profile
-  OutletLoad load;                             ///< of a pressure side
+  WallMotion motion;                           ///< velocity of a wall
+  TimeCourse given;                            ///< inflow: factor of the profile; pressure: the pressure
+  std::shared_ptr<const SideProfile> profile;  ///< profile of an inflow boundary
+  int feeder = 0;  ///< length in cells of the inlet generator beside an inflow boundary; 0: none
+  std::shared_ptr<const FedVelocity> fed;  ///< last velocity of the inlet generator, which replaces given times profile
+  OutletLoad load;                         ///< load behind a pressure boundary
 };
 
-/// [direction][low, high]; without meaning in periodic directions.
+/// [direction][low, high]; not used in periodic directions.
 using BoxSides = std::array<std::array<Side, 2>, 3>;
-/// The largest speed of any wall.
+/// Returns the largest speed of any wall.
 double wall_speed(const BoxSides &sides);
 
-/// No flow through the sides of direction d: 0 on their faces, of the velocity component d or a part of it; also on the
-/// face of a neighbour whose three cells are this rank's ghosts.
+/// Sets velocity component d, or a part of it, to 0 on the boundaries of direction d that are not open, including faces
+/// on the boundary of a neighbour that are ghosts of this rank.
 void close_wall_faces(const Box &box, View component, int d);
-/// Fills `width` layers behind every side this rank touches; ghosts from the exchange must be there already.
-/// Velocity: `velocity` holds u, v (, w); faces on sides are set to 0.
+/// Fills `width` layers of velocity ghosts behind every boundary that this rank touches, and sets the faces on closed
+/// boundaries to 0 or to the inflow. Ghosts from other ranks must be valid. `velocity` holds u, v (, w).
 void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, Field &velocity, int width);
-/// Even reflection of one field of the given staggering, also behind a neighbour's side where ghosts reach beyond it;
-/// not where `rows`, if it is given, is idle before the side.
+/// Fills `width` ghost layers of a field of the given staggering by even reflection, also behind boundaries of a
+/// neighbour where ghosts reach beyond them. Rows that `rows` marks as idle before the boundary are skipped.
 void fill_wall_ghosts_even(const Box &box, const Staggering &staggering, View field, int width,
                            const OccupiedRows *rows = nullptr);
-/// Behind solid sides 0, at centres: for fractions of bodies that end there. Other sides are left as they are.
+/// Sets ghosts at centres behind solid boundaries to 0, for fractions of bodies that end there. Ghosts behind other
+/// boundaries do not change.
 void clear_solid_ghosts(const Box &box, const BoxSides &sides, View field, int width,
                         const OccupiedRows *rows = nullptr);
-/// All components of a left Cauchy-Green field.
+/// Fills ghosts of all components of a left Cauchy-Green tensor.
 void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, Field &tensor, int width,
                              const OccupiedRows *rows = nullptr);
-/// The same where all components live at centres: the mirror image.
+/// Fills ghosts of a tensor with all components at centres by the mirror image.
 void fill_wall_ghosts_centred_tensor(const Box &box, Field &tensor, int width, const OccupiedRows *rows);
-/// Components of a left Cauchy-Green field on planes of symmetry: 0, ghosts of the other directions included.
+/// Sets components of a left Cauchy-Green tensor on planes of symmetry to 0, including ghosts of the other directions.
 void clear_symmetry_planes(const Box &box, const BoxSides &sides, Field &tensor);
 
 }  // namespace eulastic

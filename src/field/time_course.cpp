@@ -8,8 +8,8 @@ namespace eulastic {
 std::array<std::array<double, 2>, 2> TimeCourse::rows_around(double *time) const {
   const double begin = table.front()[0];
   if (period > 0) {
-    const double gone = std::fmod(*time - begin, period);
-    *time = begin + (gone < 0 ? gone + period : gone);
+    const double elapsed = std::fmod(*time - begin, period);
+    *time = begin + (elapsed < 0 ? elapsed + period : elapsed);
   }
   const auto after = std::upper_bound(table.begin(), table.end(), *time,
                                       [](double t, const std::array<double, 2> &row) { return t < row[0]; });

@@ -1,4 +1,4 @@
-// A number that the user gives over time: constant, a cosine, or a table.
+// A number that depends on time: a constant, a cosine, or a table.
 #pragma once
 
 #include <array>
@@ -6,23 +6,24 @@
 
 namespace eulastic {
 
-/// value cos(frequency t + phase); or the table, linear between its rows. Without a period it is constant before its
-/// first row and after its last one; with a period, which is at least as long as the table, it repeats, and is linear
-/// from its last row to its first one of the next period.
+/// value cos(frequency t + phase), or a table with linear interpolation between its rows. Without a period the table is
+/// constant before its first and after its last row. With a period, which is at least as long as the table, it repeats,
+/// with linear interpolation from the last row to the first row of the next period.
 struct TimeCourse {
   double value = 0;
   double frequency = 0;                      ///< angular, 1 / time
   double phase = 0;                          ///< rad
-  std::vector<std::array<double, 2>> table;  ///< time, value; times ascend. Empty: none
-  double period = 0;                         ///< of the table; 0: it does not repeat
+  std::vector<std::array<double, 2>> table;  ///< time, value, with ascending times; empty: no table
+  double period = 0;                         ///< period of the table; 0: it does not repeat
   double at(double time) const;
-  double rate(double time) const;       ///< its change per time; of a table that of the piece that begins then
-  double angular_frequency() const;     ///< of what repeats, >= 0; 0: nothing does
-  std::array<double, 2> range() const;  ///< least and largest at any time
-  double largest() const;               ///< of its size, at any time
+  double rate(double time) const;       ///< derivative in time; at a row of the table that of the following piece
+  double angular_frequency() const;     ///< of the repetition, >= 0; 0: none
+  std::array<double, 2> range() const;  ///< smallest and largest value at any time
+  double largest() const;               ///< largest absolute value at any time
 
 private:
-  /// The two rows of the table around a time, which is moved into the table's first period; equal where it is constant.
+  /// Returns the two rows of the table around a time, which is moved into the first period; they are equal where the
+  /// table is constant.
   std::array<std::array<double, 2>, 2> rows_around(double *time) const;
 };
 

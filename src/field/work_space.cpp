@@ -12,9 +12,9 @@ constexpr bool debug = false;
 #else
 constexpr bool debug = true;
 #endif
-// A routine that reads what it has not written then gets wrong results. Not NaN, because 0 times NaN is NaN and the
-// coefficient 0 stands for a wall.
-constexpr double spoilt = 1e200;
+// A routine that reads values it has not written then gives wrong results. NaN is not used, because 0 times NaN is NaN
+// and coefficients are 0 at walls.
+constexpr double poison = 1e200;
 
 }  // namespace
 
@@ -31,8 +31,9 @@ std::string WorkSpace::holders() const {
 PetscErrorCode WorkSpace::reserve(int count) {
   PetscFunctionBeginUser;
   if (count <= fields_.count()) PetscFunctionReturn(0);
-  const bool out = std::any_of(holder_.begin(), holder_.end(), [](const char *name) { return name != nullptr; });
-  PetscCheck(!out, domain_->comm(), PETSC_ERR_PLIB, "work space cannot grow while it is used: %s", holders().c_str());
+  const bool in_use = std::any_of(holder_.begin(), holder_.end(), [](const char *name) { return name != nullptr; });
+  PetscCheck(!in_use, domain_->comm(), PETSC_ERR_PLIB, "work space cannot grow while it is used: %s",
+             holders().c_str());
   fields_ = {};
   fields_ = Field(*domain_, count);
   holder_.assign(count, nullptr);
@@ -48,7 +49,7 @@ PetscErrorCode WorkSpace::take(const char *name, int count, Lease *lease) {
   lease->space_ = this;
   lease->first_ = static_cast<int>(at - holder_.begin());
   lease->fields_ = fields_.part(lease->first_, count);
-  for (int f = 0; f < count && (debug || skips_nothing()); ++f) lease->fields_.fill(f, spoilt);
+  for (int f = 0; f < count && (debug || skips_nothing()); ++f) lease->fields_.fill(f, poison);
   PetscFunctionReturn(0);
 }
 

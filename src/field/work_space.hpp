@@ -1,4 +1,4 @@
-// Fields that the verbs of a step need one after the other: each takes what it needs, by name, for a scope.
+// Fields that the routines of a step use one after the other: each routine leases fields, under a name, for a scope.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -10,9 +10,11 @@
 
 namespace eulastic {
 
+/// Owns fields on a domain that routines lease.
 class WorkSpace {
 public:
-  /// Fields of the work space, given back at the end of the scope. Their values are anything; debug builds spoil them.
+  /// Leased fields, which are returned at the end of the scope. Their initial values are undefined; debug builds fill
+  /// them with a wrong value.
   class Lease {
   public:
     Lease() = default;
@@ -20,7 +22,7 @@ public:
     Lease &operator=(const Lease &) = delete;
     ~Lease();
     Field &fields() noexcept { return fields_; }
-    /// `count` of them, from `first` on.
+    /// Returns `count` of the fields, from `first` on.
     Field part(int first, int count) noexcept { return fields_.part(first, count); }
 
   private:
@@ -31,9 +33,9 @@ public:
   };
 
   explicit WorkSpace(const Domain &domain) : domain_(&domain) {}
-  /// At least so many fields; while none is out.
+  /// Makes sure that there are at least `count` fields. No field may be leased.
   PetscErrorCode reserve(int count);
-  /// `count` fields that follow each other. Fails where so many are not free, with the names of who holds them.
+  /// Leases `count` consecutive fields. Fails if there are not enough free fields, with the names of all holders.
   PetscErrorCode take(const char *name, int count, Lease *lease);
   std::size_t bytes() const { return fields_.bytes(); }
 
@@ -42,7 +44,7 @@ private:
 
   const Domain *domain_;
   Field fields_;
-  std::vector<const char *> holder_;  ///< of every field, or null
+  std::vector<const char *> holder_;  ///< name of the holder of every field, or null
 };
 
 }  // namespace eulastic

@@ -29,7 +29,7 @@ EULASTIC_CLONES void correct_rows(const Box &box, const RowPart &part, double dt
     }
 }
 
-// The increments below a part that is not the first, before p changes.
+// Computes the increments below a part other than the first, before any part changes p.
 EULASTIC_CLONES void find_increments_below(const Box &box, const RowPart &part, kernels::AcmIncrement formula,
                                            const Field &divergence, const Field &pressure, RowScratch &increments) {
   const int n = box.cells()[0];
@@ -43,8 +43,8 @@ EULASTIC_CLONES void find_increments_below(const Box &box, const RowPart &part, 
   }
 }
 
-// `increments`: rows -1 ... n_y of the plane below, each until it is that of this plane. x works its increments out by
-// itself: reading them across the vectors that were just written, it would wait for the caches.
+// `increments` has the rows -1 ... n_y of the plane below; each is replaced by that of this plane. The correction of u
+// computes its increments again, because reading them across the vectors that were just written would stall.
 EULASTIC_CLONES void correct_rows_by_formula(const Box &box, const RowPart &part, double dt_over_density,
                                              double rotation, kernels::AcmIncrement formula, const Field &divergence,
                                              Field &velocity, Field &pressure, RowScratch &increments) {
@@ -56,7 +56,7 @@ EULASTIC_CLONES void correct_rows_by_formula(const Box &box, const RowPart &part
       const double *D = divergence[0].row(j, k);
       double *p = pressure[0].row(j, k), *dp = increments.row(j + 1);
       const auto increment_at = [=](int i) EULASTIC_BODY { return formula(D[i], p[i]); };
-      const auto move = [=](int i) EULASTIC_BODY {
+      const auto update_pressure = [=](int i) EULASTIC_BODY {
         const double increment = increment_at(i);
         p[i] += kernels::fma(-rotation, D[i], increment);
         return increment;
@@ -68,19 +68,19 @@ EULASTIC_CLONES void correct_rows_by_formula(const Box &box, const RowPart &part
 #pragma omp simd
         for (int i = 0; i < n[0]; ++i) u[i] = kernels::fma(-factor, increment_at(i) - increment_at(i - 1), u[i]);
       }
-      for (const int i : {-1, n[0]}) dp[i] = move(i);
+      for (const int i : {-1, n[0]}) dp[i] = update_pressure(i);
       if (owned && !flat) {
         double *w = velocity[2].row(j, k);
         const double factor = dt_over_density / h[2];
 #pragma omp simd
         for (int i = 0; i < n[0]; ++i) {
-          const double increment = move(i);
+          const double increment = update_pressure(i);
           w[i] = kernels::fma(-factor, increment - dp[i], w[i]);
           dp[i] = increment;
         }
       } else {
 #pragma omp simd
-        for (int i = 0; i < n[0]; ++i) dp[i] = move(i);
+        for (int i = 0; i < n[0]; ++i) dp[i] = update_pressure(i);
       }
       if (owned) correct_row(n[0], dt_over_density / h[1], dp, increments.row(j), velocity[1].row(j, k));
     }
@@ -98,8 +98,8 @@ PetscErrorCode correct_velocity(const Box &box, double density, double dt, doubl
   for (int a = 0; a < box.dimension(); ++a)
     for (const Segment &row : box.open_high_faces(a)) {
       const ConstView q = increment[0];
-      const double *here = q.row(row.j, row.k) + row.i_begin;
-      correct_row(row.size(), dt / density / box.spacing()[a], here, here - q.stride(a),
+      const double *increment_row = q.row(row.j, row.k) + row.i_begin;
+      correct_row(row.size(), dt / density / box.spacing()[a], increment_row, increment_row - q.stride(a),
                   velocity[a].row(row.j, row.k) + row.i_begin);
     }
   scope.flops(box.cell_count() * (3 * box.dimension() + 3));

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// psi_c = sum over modes of a product of one factor per direction: periodic cos(2 pi m x/L + phase), or
-// sin^2(pi m x/L) between walls, which makes the curl of psi vanish there; 1 in z when 2-D.
+// psi_c is a sum over modes, each a product of one factor per direction: cos(2 pi m x/L + phase) in a periodic
+// direction, or sin^2(pi m x/L) between walls, so that the curl of psi vanishes there; 1 in z in 2-D.
 struct Mode {
   double coefficient;
   Int3 number;
@@ -17,7 +17,7 @@ struct Mode {
 };
 using Modes = std::array<std::vector<Mode>, 3>;
 
-// value and derivative
+// Returns the factor of direction d at x, and its derivative.
 std::array<double, 2> factor(const DomainShape &domain, const Mode &mode, int d, double x) {
   if (d >= domain.dimension()) return {1.0, 0.0};
   const double k = 2 * pi * mode.number[d] / domain.length[d];
@@ -45,6 +45,7 @@ Modes random_modes(const DomainShape &domain, double amplitude) {
   return modes;
 }
 
+// Returns the derivative of a component of psi at x.
 double derivative(const DomainShape &domain, const std::vector<Mode> &modes, int direction, const Real3 &x) {
   double sum = 0;
   for (const Mode &mode : modes) {
@@ -55,11 +56,11 @@ double derivative(const DomainShape &domain, const std::vector<Mode> &modes, int
   return sum;
 }
 
-// Component c at x.
+// Returns velocity component c at x.
 struct Pointwise {
   DomainShape domain;
   InitialFlow flow;
-  Real3 wall_low, wall_high;  // of y, at t = 0
+  Real3 wall_low, wall_high;  // of the walls in y, at t = 0
   Modes modes;
 
   double operator()(int c, const Real3 &x) const {

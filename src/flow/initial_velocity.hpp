@@ -1,4 +1,4 @@
-// The flow a run starts from, written pointwise on the faces.
+// Analytical initial velocities, evaluated at the faces.
 #pragma once
 
 #include "field/sides.hpp"
@@ -8,7 +8,7 @@
 
 namespace eulastic {
 
-/// shear_wave_ab: component a varies along b.
+/// In shear_wave_ab component a varies along b.
 enum class InitialVelocity {
   zero,
   uniform,
@@ -25,20 +25,22 @@ enum class InitialVelocity {
   shear_wave_zy,
   random
 };
-/// Their names, in the order of the enum.
+/// Returns the names as in the options, in the order of the enum.
 const std::vector<std::string> &initial_velocity_names();
-/// {a, b} of shear_wave_ab, {-1, -1} of the others.
+/// Returns {a, b} for shear_wave_ab, {-1, -1} for the others.
 std::array<int, 2> shear_wave_directions(InitialVelocity kind);
 
+/// Parameters of the initial velocity.
 struct InitialFlow {
   InitialVelocity kind = InitialVelocity::zero;
-  double amplitude = 1;  ///< A, length / time; zero, uniform and couette do not use it
+  double amplitude = 1;  ///< A, length / time; not used by zero, uniform and couette
   Real3 mean{};          ///< added to every flow
 };
 
-/// Writes u, v (, w) of `velocity` at all owned faces, those of open high sides too; index N of other directions and
-/// ghosts are left to fill_wall_ghosts_velocity and the exchange. The value at a face depends on its position alone, so
-/// the bits do not depend on the ranks. Solenoidal up to the truncation error of the grid: project it.
+/// Sets u, v (, w) of `velocity` at all owned faces, including those on open high boundaries. Faces with index N of
+/// other directions and ghosts are set by fill_wall_ghosts_velocity and the exchange. The value at a face depends on
+/// its position alone, so that the bits do not depend on the ranks. The flow is solenoidal up to the truncation error
+/// of the grid; a projection must follow.
 void set_initial_velocity(const Box &box, const BoxSides &sides, const InitialFlow &flow, Field &velocity);
 
 }  // namespace eulastic

@@ -15,23 +15,22 @@ namespace eulastic {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// Shares of the limits that the automatic step uses (docs/method.md). Euler lowers the viscosity by U^2 dt/2: a tenth
-// of 2 nu/U^2 keeps that below 10 % where the flow is fastest.
+// Fractions of the limits for the automatic step (docs/method.md, section 8). Euler lowers the viscosity by U^2 dt/2; a
+// tenth of 2 nu/U^2 keeps this below 10 % where the flow is fastest.
 constexpr double combined_share = 0.8, inertial_share = 0.1;
 constexpr double advective_euler = 0.25, advective_staggered = 0.3;
 constexpr double elastic_share = 0.5, kelvin_voigt_share = 0.05, forcing_share = 1. / 40;
 constexpr double capillary_share = 0.5, capillary_viscous_share = 0.4;
 constexpr double pi = 3.14159265358979323846;
 
-double over(double a, double b) { return b > 0 ? a / b : infinite; }
+double ratio(double a, double b) { return b > 0 ? a / b : infinite; }
 
 struct RowExtremes {
   double largest = 0;
-  bool bad = false;  ///< there are infinities or NaN
+  bool bad = false;  ///< whether there are infinities or NaN
 };
 
-// Of |value(i)|.
-// `counts(i)`: whether a value may be the largest; a bad one is bad wherever it is.
+// Returns the largest |value(i)| over all i for which counts(i) is true. Non-finite values are found at any i.
 template <class Value, class Counts>
 EULASTIC_INLINE RowExtremes extremes_of(int begin, int end, Value value, Counts counts) {
   double largest = 0;
@@ -50,7 +49,7 @@ EULASTIC_CLONES RowExtremes row_extremes(const double *q, int begin, int end) {
       begin, end, [=](int i) EULASTIC_BODY { return q[i]; }, [](int) EULASTIC_BODY { return true; });
 }
 
-// Of tr B where phi is at least that; 2-D: B_zz = 1, zz is null.
+// Extremes of tr B where phi >= least. In 2-D B_zz = 1 and zz is null.
 EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, const double *zz, const double *phi,
                                            double least, int begin, int end) {
   const auto evolves = [=](int i) EULASTIC_BODY { return phi[i] >= least; };
@@ -61,7 +60,7 @@ EULASTIC_CLONES RowExtremes trace_extremes(const double *xx, const double *yy, c
       begin, end, [=](int i) EULASTIC_BODY { return xx[i] + yy[i] + zz[i]; }, evolves);
 }
 
-// Speeds, - the first bad cell, traces of the phases: all of which the largest counts.
+// Maxima of the speeds, of minus the index of the first bad cell, and of the traces of the phases.
 class Extremes {
 public:
   explicit Extremes(std::size_t phases) : largest_(first_trace + phases) { largest_[bad_cell] = -infinite; }
@@ -74,7 +73,7 @@ public:
           const double *row = velocity[d].row(j, k);
           const RowExtremes r = row_extremes(row, 0, n);
           largest_[d] = std::max(largest_[d], r.largest);
-          if (r.bad) mark(box, row, {0, n, j, k});
+          if (r.bad) record_bad_cell(box, row, {0, n, j, k});
         }
     for (int d = 0; d < velocity.count() && rows.first; ++d)
       for (const Segment &row : box.faces_on(d, true))
@@ -82,7 +81,7 @@ public:
             std::max(largest_[d], row_extremes(velocity[d].row(row.j, row.k), row.i_begin, row.i_end).largest);
   }
 
-  /// Part `part` of `parts` of the segments in which a phase evolves.
+  /// Adds part `part` of `parts` of the segments in which a phase evolves.
   void add_phase(const Box &box, int part, int parts, const Phase &phase, int number) {
     const Int3 &n = box.cells();
     const std::vector<Segment> &solid = phase.tensor.evolving.all();
@@ -98,9 +97,9 @@ public:
           trace_extremes(xx, yy, zz, phase.fraction[0].row(s.j, s.k), phase.tensor.rule.centre, s.i_begin, s.i_end);
       most = std::max(most, r.largest);
       if (!r.bad) continue;
-      mark(box, xx, s);
-      mark(box, yy, s);
-      if (zz) mark(box, zz, s);
+      record_bad_cell(box, xx, s);
+      record_bad_cell(box, yy, s);
+      if (zz) record_bad_cell(box, zz, s);
     }
     largest_[first_trace + number] = std::max(largest_[first_trace + number], most);
   }
@@ -109,8 +108,8 @@ public:
   static constexpr int bad_cell = 3, first_trace = 4;
 
 private:
-  /// The first value of a row that is bad.
-  void mark(const Box &box, const double *row, const Segment &s) {
+  /// Records the cell of the first non-finite value of a row.
+  void record_bad_cell(const Box &box, const double *row, const Segment &s) {
     const Int3 &N = box.domain_cells(), &begin = box.layout().begin;
     const double y = box.image(1, begin[1] + s.j), z = box.image(2, begin[2] + s.k);
     for (int i = s.i_begin; i < s.i_end; ++i)
@@ -133,7 +132,7 @@ double stretch_squared(double trace, int dimension) {
     const double t = std::max(trace - 1, 2.0);
     return 0.5 * (t + std::sqrt(t * t - 4));
   }
-  // x + 2/sqrt(x) = trace: with y = sqrt(x) the largest root of y^3 - trace y + 2 = 0.
+  // The largest root of x + 2/sqrt(x) = trace: with y = sqrt(x) the largest root of y^3 - trace y + 2 = 0.
   const double t = std::max(trace, 3.0);
   const double y = 2 * std::sqrt(t / 3) * std::cos(std::acos(-std::sqrt(27 / (t * t * t))) / 3);
   return y * y;
@@ -141,7 +140,7 @@ double stretch_squared(double trace, int dimension) {
 
 double inverse_stretch_squared(double trace, int dimension) {
   if (dimension == 2) return stretch_squared(trace, dimension);
-  // 2/y + y^2 = trace, y the least stretch: the least positive root of the same cubic.
+  // With the least stretch y, 2/y + y^2 = trace: y is the least positive root of the same cubic.
   const double t = std::max(trace, 3.0);
   const double y = 2 * std::sqrt(t / 3) * std::cos((std::acos(-std::sqrt(27 / (t * t * t))) - 2 * pi) / 3);
   return 1 / (y * y);
@@ -157,18 +156,19 @@ PetscErrorCode measure_extremes(const Domain &domain, const Field &velocity, con
                                 FlowExtremes *extremes, const std::vector<BodyInBox> &bodies) {
   PetscFunctionBeginUser;
   const int parts = row_parts(domain);
-  std::vector<std::vector<double>> found(parts);
+  std::vector<std::vector<double>> maxima(parts);
   in_parallel(parts, parts, [&](int part) {
-    Extremes some(phases.size());
-    some.add_velocity(domain, row_part(domain, part, parts), velocity);
-    for (std::size_t p = 0; p < phases.size(); ++p) some.add_phase(domain, part, parts, phases[p], static_cast<int>(p));
+    Extremes part_extremes(phases.size());
+    part_extremes.add_velocity(domain, row_part(domain, part, parts), velocity);
+    for (std::size_t p = 0; p < phases.size(); ++p)
+      part_extremes.add_phase(domain, part, parts, phases[p], static_cast<int>(p));
     const Piece own(bodies.size(), part, parts);
     for (std::size_t b = own.begin; b < own.end; ++b)
-      some.add_phase(*bodies[b].box, 0, 1, *bodies[b].phase, bodies[b].species);
-    found[part] = some.largest();
+      part_extremes.add_phase(*bodies[b].box, 0, 1, *bodies[b].phase, bodies[b].species);
+    maxima[part] = part_extremes.largest();
   });
   std::vector<double> largest;
-  PetscCall(reduce_maxima(domain.comm(), found, &largest));
+  PetscCall(reduce_maxima(domain.comm(), maxima, &largest));
   extremes->speed = {largest[0], largest[1], largest[2]};
   extremes->first_bad = largest[Extremes::bad_cell] == -infinite ? -1 : -largest[Extremes::bad_cell];
   extremes->trace.assign(largest.begin() + Extremes::first_trace, largest.end());
@@ -196,7 +196,7 @@ TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid
     gain += std::fabs(fluid.body_force.force[d]) / spacing[d];
     speed_squared += speed * speed;
   }
-  // The spectrum of the deviatoric stress of varying viscosity reaches to 4/3 of the Laplacian's in 3-D.
+  // In 3-D the spectrum of the deviatoric stress with variable viscosity extends to 4/3 of that of the Laplacian.
   const bool varies = contrast.exists();
   const double nu =
       varies ? (dimension == 3 ? 4. / 3 : 1) * contrast.most / fluid.density : fluid.kinematic_viscosity();
@@ -205,19 +205,20 @@ TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid
   const double share = scheme.staggered ? advective_staggered : advective_euler;
   TimeStepLimits limits{};
   limits.scheme = scheme;
-  limits.viscous = over(1, 2 * nu * S);
-  limits.elastic = over(1, std::sqrt(c_squared * S));
-  limits.combined = over(1, nu * S + std::sqrt(nu * nu * S * S + c_squared * S));
-  limits.kelvin_voigt = varies ? contrast.kelvin_voigt : over(2 * fluid.viscosity, extremes.stiffness);
-  limits.advective = over(2 * share, crossing + std::sqrt(crossing * crossing + 4 * gain * share));
-  limits.inertial = fluid.inertia && least > 0 ? over(2 * least, speed_squared) : infinite;
+  limits.viscous = ratio(1, 2 * nu * S);
+  limits.elastic = ratio(1, std::sqrt(c_squared * S));
+  limits.combined = ratio(1, nu * S + std::sqrt(nu * nu * S * S + c_squared * S));
+  limits.kelvin_voigt = varies ? contrast.kelvin_voigt : ratio(2 * fluid.viscosity, extremes.stiffness);
+  limits.advective = ratio(2 * share, crossing + std::sqrt(crossing * crossing + 4 * gain * share));
+  limits.inertial = fluid.inertia && least > 0 ? ratio(2 * least, speed_squared) : infinite;
   const double shortest = *std::min_element(spacing.begin(), spacing.begin() + dimension);
-  limits.capillary = std::sqrt(over(fluid.density * shortest * shortest * shortest, 2 * pi * contrast.surface_tension));
-  limits.capillary_viscous = over(shortest, contrast.capillary_speed);
+  limits.capillary =
+      std::sqrt(ratio(fluid.density * shortest * shortest * shortest, 2 * pi * contrast.surface_tension));
+  limits.capillary_viscous = ratio(shortest, contrast.capillary_speed);
   const double wave_number = pi / (2 * shortest), cubed = wave_number * wave_number * wave_number;
-  limits.bending = std::sqrt(over(8 * fluid.density, contrast.bending_modulus * cubed * (wave_number * wave_number)));
-  limits.bending_viscous = over(8, contrast.bending_rate * cubed);
-  limits.forcing = over(2 * pi, frequency);
+  limits.bending = std::sqrt(ratio(8 * fluid.density, contrast.bending_modulus * cubed * (wave_number * wave_number)));
+  limits.bending_viscous = ratio(8, contrast.bending_rate * cubed);
+  limits.forcing = ratio(2 * pi, frequency);
   return limits;
 }
 

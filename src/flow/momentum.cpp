@@ -16,12 +16,12 @@ struct RateTerms {
   const Box &box;
   const Field &velocity, &pressure;
   const std::vector<Phase> &phases;
-  Field *advection;  // null: not kept
+  Field *advection;  // null: not stored
   WeightedTarget slope;
   bool inertia;
   double density, epsilon;
   AdvectionWeights weights;
-  Real3 body_force, inverse;  // the latter of the spacing
+  Real3 body_force, inverse;  // inverse: of the spacing
   InverseSquares viscosity;   // nu/h^2
 };
 
@@ -45,13 +45,13 @@ RateTerms rate_terms(const Box &box, const Fluid &fluid, const MomentumStep &ste
           {over_square(0), over_square(1), over_square(2)}};
 }
 
-// Rows of a block in a plane.
+// The rows of a block in one plane.
 struct BlockRows {
   int begin, end, k;
 };
 
-// What is asked for ahead of row j of component a: the rows of its stencil, at the block's sides too, of the result and
-// of what goes with it.
+// Returns the rows to prefetch before row j of component a: rows of its stencil, also at the ends of the block, of the
+// result and of the other fields.
 RowsAhead rows_ahead(const RateTerms &t, const BlockRows &block, int a, int j, const Field &out) {
   constexpr int reach = Box::stencil_width;
   const RowAhead next(block.begin, block.end, j, block.k);
@@ -67,7 +67,8 @@ RowsAhead rows_ahead(const RateTerms &t, const BlockRows &block, int a, int j, c
   return ahead;
 }
 
-// rate holds -v.grad v of now and `kept` that of the last step; they trade places, weighted.
+// On entry `rate` holds -v.grad v of this step and `kept` that of the last one; on return `rate` holds their weighted
+// sum and `kept` that of this step.
 EULASTIC_INLINE void combine_advection(const Segment &row, AdvectionWeights weights, double *kept, double *rate) {
 #pragma omp simd
   for (int i = row.i_begin; i < row.i_end; ++i) {
@@ -77,7 +78,7 @@ EULASTIC_INLINE void combine_advection(const Segment &row, AdvectionWeights weig
   }
 }
 
-// All terms but the elastic force, of component a on a row. `advection`: a row of scratch.
+// Computes all terms except the elastic force for component a on a row. `advection` is a row of scratch.
 template <int Dim>
 EULASTIC_INLINE void rate_of_row(const RateTerms &t, const Segment &row, int a, const RowsAhead &ahead,
                                  double *advection, Field &out) {
@@ -113,7 +114,7 @@ EULASTIC_CLONES void fluid_rate_3d(const RateTerms &t, const BlockRows &block, d
   fluid_rate<3>(t, block, advection, out);
 }
 
-// On the high faces of open sides, which are no row's.
+// The same on the high faces of open boundaries, which are not part of the rows.
 EULASTIC_CLONES void open_face_rate_2d(const RateTerms &t, const Segment &row, int a, double *advection, Field &out) {
   rate_of_row<2>(t, row, a, {}, advection, out);
 }
@@ -121,10 +122,10 @@ EULASTIC_CLONES void open_face_rate_3d(const RateTerms &t, const Segment &row, i
   rate_of_row<3>(t, row, a, {}, advection, out);
 }
 
-// Fewer rows than for other verbs, as nine fields share the cache.
+// Half as many rows as in other routines, because nine fields share the cache.
 constexpr int rows_of_block = block_rows / 2;
 
-// The rate, and after(rows) while it is in the caches.
+// Computes the rate, and calls after(rows) while these rows are in the caches.
 template <class After>
 void compute_rate(const RateTerms &t, Field &out, const After &after) {
   VerbScope scope(Verb::momentum);
@@ -152,7 +153,7 @@ void compute_rate(const RateTerms &t, Field &out, const After &after) {
     for (const Phase &phase : t.phases) scope.flops(dim * 2 * phase.tensor.stressed.points());
 }
 
-// v + dt rate, in place of the rate.
+// Replaces the rate by v + dt rate.
 EULASTIC_CLONES void advance_row(const Segment &row, double dt, ConstView velocity, View rate) {
   const double *v = velocity.row(row.j, row.k);
   double *out = rate.row(row.j, row.k);

@@ -74,7 +74,7 @@ PetscErrorCode Projection::create(int memory) {
   PetscFunctionReturn(0);
 }
 
-// (10) or (11), for a velocity with one ghost.
+// Solves (10) or (11) for a velocity with one valid ghost layer.
 PetscErrorCode Projection::find_increment(double dt, double target, const Field &velocity, Field &pressure,
                                           Field &divergence, Field &increment) {
   PetscFunctionBeginUser;
@@ -101,11 +101,11 @@ PetscErrorCode Projection::end_step(double dt, const PressureRotation &rotation,
   const Real3 &h = flow_.domain.spacing();
   const double shortest = flow_.domain.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
   const double target = flow_.spec.acm_tolerance * flow_.fluid.density * flow_.speed_scale(dt) / shortest;
-  WorkSpace::Lease of_velocity, increment;
+  WorkSpace::Lease divergence_lease, increment;
   PetscFunctionBeginUser;
-  PetscCall(flow_.work.take("divergence", 1, &of_velocity));
+  PetscCall(flow_.work.take("divergence", 1, &divergence_lease));
   if (!solver_->formula()) PetscCall(flow_.work.take("pressure increment", 1, &increment));
-  Field &divergence = of_velocity.fields(), &pressure = flow_.now.pressure, &velocity = flow_.velocity_star;
+  Field &divergence = divergence_lease.fields(), &pressure = flow_.now.pressure, &velocity = flow_.velocity_star;
   PetscCall(find_increment(dt, target, velocity, pressure, divergence, increment.fields()));
   for (FlowPart *part : flow_.parts) {
     PetscCall(part->begin_correction(divergence));
@@ -119,45 +119,46 @@ PetscErrorCode Projection::end_step(double dt, const PressureRotation &rotation,
   PetscFunctionReturn(0);
 }
 
-// The single step of the paper's artificial compressibility is repeated.
+// The paper's single step of artificial compressibility is repeated until the velocity is nearly solenoidal.
 PetscErrorCode Projection::make_solenoidal(bool is_rate, Field &velocity, Field &pressure) {
   constexpr double dt = 1;
-  const int times = flow_.spec.pressure == PressureKind::acm && flow_.spec.acm_of_the_paper() ? 200 : 1;
-  WorkSpace::Lease of_velocity, increment;
-  Field found(flow_.domain, 1);  // without a pressure its relaxation has nothing to do
+  const int iterations = flow_.spec.pressure == PressureKind::acm && flow_.spec.acm_of_the_paper() ? 200 : 1;
+  WorkSpace::Lease divergence_lease, increment;
+  Field pressure_correction(flow_.domain, 1);  // starts at 0, so that (11) has no relaxation
   PetscFunctionBeginUser;
-  PetscCall(flow_.work.take("divergence", 1, &of_velocity));
+  PetscCall(flow_.work.take("divergence", 1, &divergence_lease));
   if (!solver_->formula()) PetscCall(flow_.work.take("pressure increment", 1, &increment));
-  Field &divergence = of_velocity.fields();
-  for (int n = 0; n < times; ++n) {
+  Field &divergence = divergence_lease.fields();
+  for (int n = 0; n < iterations; ++n) {
     PetscCall(flow_.exchange.update_ghosts(velocity, 1));
-    PetscCall(find_increment(dt, 0, velocity, found, divergence, increment.fields()));
-    PetscCall(correct(dt, 0, divergence, increment.fields(), velocity, found));
+    PetscCall(find_increment(dt, 0, velocity, pressure_correction, divergence, increment.fields()));
+    PetscCall(correct(dt, 0, divergence, increment.fields(), velocity, pressure_correction));
     for (FlowPart *part : flow_.parts) PetscCall(part->correct(flow_.now.time, dt, increment.fields(), velocity));
     if (flow_.rigid && is_rate) clear_rigid_faces(flow_.domain, *flow_.rigid, velocity);
     for (const Segment &row : flow_.domain.rows()) {
-      const double *q = found[0].row(row.j, row.k);
+      const double *q = pressure_correction[0].row(row.j, row.k);
       double *p = pressure[0].row(row.j, row.k);
       for (int i = 0; i < row.i_end; ++i) p[i] += q[i];
     }
-    found.clear();
+    pressure_correction.clear();
   }
   PetscFunctionReturn(0);
 }
 
 namespace {
 
-// What comes in changes by per time.
-BoxSides rates_of(const BoxSides &sides, double time) {
+// Returns boundary conditions whose given velocities are the time derivatives of those of `sides`.
+BoxSides time_derivatives_of(const BoxSides &sides, double time) {
   BoxSides rates = sides;
   for (auto &pair : rates)
-    for (Side &side : pair) side.given = {side.given.rate(time), 0, 0, {}};  // at the start nothing is fed
+    // inlet generators have no velocity yet at the start
+    for (Side &side : pair) side.given = {side.given.rate(time), 0, 0, {}};
   return rates;
 }
 
 }  // namespace
 
-// The first step would do both as well, with a pressure that grows as 1/dt; the next would start from that.
+// The first step would also do this, but with a pressure that grows as 1/dt, which the next step would start from.
 PetscErrorCode start_flow(Flow *flow, Projection *projection) {
   const Domain &domain = flow->domain;
   State &now = flow->now;
@@ -170,14 +171,14 @@ PetscErrorCode start_flow(Flow *flow, Projection *projection) {
   for_points(domain.rows(),
              [&](int i, int j, int k) { largest = std::max(largest, std::fabs(now.pressure[0](i, j, k))); });
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
-  if (largest > 0) PetscFunctionReturn(0);  // of a file
+  if (largest > 0) PetscFunctionReturn(0);  // the pressure was read from a file
   fill_ghosts_of_given_pressure(domain, flow->spec.sides, now.time, flow->fluid.density, now.velocity, now.pressure[0]);
   const MomentumStep step{now.time, 1, flow->speed_scale(1), {}};
   PetscCall(momentum_rate(domain, flow->fluid, step, now.velocity, now.pressure, {}, no_advection, rate));
   for (int d = 0; d < dim; ++d)
     if (domain.is_wall(d)) {
       close_wall_faces(domain, rate[d], d);
-      set_inflow_faces(domain, rates_of(flow->spec.sides, now.time), 0, rate[d], d);
+      set_inflow_faces(domain, time_derivatives_of(flow->spec.sides, now.time), 0, rate[d], d);
     }
   const double nu = flow->fluid.kinematic_viscosity();
   if (flow->rigid) see_rigid_surfaces(domain, *flow->rigid, nu, nu, now.time, 0, now.velocity, rate, nullptr);

@@ -1,5 +1,5 @@
-// The projection: the increment of the pressure that makes a velocity solenoidal, and what it does to both, (8) to
-// (13).
+// The projection: computes the pressure increment that makes a velocity solenoidal, and corrects velocity and pressure,
+// (8) to (13).
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,33 +11,33 @@
 
 namespace eulastic {
 
-/// D* = rho div v* at centres. Needs one ghost of v*. Rows are wrapped by one around a periodic x.
+/// Computes D* = rho div v* at the owned centres. v* needs one ghost.
 PetscErrorCode compute_divergence(const Box &box, double density, const Field &velocity_star, Field &divergence);
 
-/// Of the rotational update of the pressure: the factor of D*, and that of the place's kinematic viscosity times D*.
+/// Factors of the rotational update of the pressure: of D*, and of D* times the local kinematic viscosity.
 struct PressureRotation {
   double uniform = 0, local = 0;
 };
 
+/// Owns the pressure solver and performs the projections of a flow.
 class Projection {
 public:
-  /// Fields of the work space that it holds at once; `open`: the pressure is given on a side; `rigid`: there are
-  /// bodies.
+  /// Number of fields of the work space that are leased at the same time. `open`: there is an open boundary; `rigid`:
+  /// there are rigid bodies.
   static int work_fields(const Method &method, bool open, bool rigid);
 
   explicit Projection(Flow *flow) : flow_(*flow) {}
-  /// Makes the pressure solver that the scheme asks for, which remembers so many increments of earlier steps.
-  /// Collective.
+  /// Creates the pressure solver of the method, which stores `memory` increments of earlier steps. Collective.
   PetscErrorCode create(int memory);
   PressureSolver &solver() const { return *solver_; }
-  /// For another one to take its place.
+  /// Access for replacing the solver.
   std::unique_ptr<PressureSolver> *owned_solver() { return &solver_; }
 
-  /// Ends a step: Flow::velocity_star, one ghost, becomes the velocity, and the pressure that of the end or the middle
-  /// of the step. `viscosity`: LocalViscosity::fields, where rotation.local is not 0. Collective.
+  /// Ends a step: makes Flow::velocity_star, with one valid ghost layer, the new velocity and updates the pressure to
+  /// the end or the middle of the step. `viscosity`: LocalViscosity::fields if rotation.local is not 0. Collective.
   PetscErrorCode end_step(double dt, const PressureRotation &rotation, const Field &viscosity);
-  /// v -= grad q and p += q for the q that makes v solenoidal: a velocity, or how it changes in time. Owned cells.
-  /// Collective.
+  /// Subtracts grad q from `velocity` and adds q to `pressure`, with the q that makes `velocity` solenoidal; `is_rate`:
+  /// it is the time derivative of a velocity. Owned cells only. Collective.
   PetscErrorCode make_solenoidal(bool is_rate, Field &velocity, Field &pressure);
 
 private:
@@ -50,8 +50,8 @@ private:
   std::unique_ptr<PressureSolver> solver_;
 };
 
-/// Makes the flow at the start pass through the sides as it is given there and, if there is no pressure yet, finds the
-/// one that goes with it, but for forces of bodies. Collective.
+/// Projects the initial flow with the given velocities on the boundaries and, if no pressure is known, computes the
+/// initial pressure without forces of bodies. Collective.
 PetscErrorCode start_flow(Flow *flow, Projection *projection);
 
 }  // namespace eulastic

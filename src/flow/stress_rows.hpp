@@ -1,4 +1,4 @@
-// The deviatoric stress of varying viscosity on the rows of a component, those on open sides of the box included.
+// The deviatoric stress with variable viscosity on the rows of a velocity component, including rows on open boundaries.
 #pragma once
 
 #include "flow/local_viscosity.hpp"
@@ -6,7 +6,7 @@
 
 namespace eulastic {
 
-/// The stress around the faces of component a in a row; two ghosts of v.
+/// Returns the stress around the faces of component a in a row. v needs two ghosts.
 template <int Dim>
 EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Box &box, const Field &viscosity, const Field &v,
                                                              int a, int j, int k) {
@@ -28,8 +28,8 @@ EULASTIC_INLINE kernels::DeviatoricStress<Dim> stress_on_row(const Box &box, con
           1 / h[c]};
 }
 
-/// visit(faces, side) for the faces of component a in a row, those on open sides that they are normal to by themselves.
-/// side: -1 on a low, 1 on a high one, else 0.
+/// Calls visit(faces, side) for the faces of component a in a row. Faces on open boundaries to which they are normal
+/// are visited separately: side is -1 on a low boundary, 1 on a high one, otherwise 0.
 template <class Visit>
 void for_faces(const Box &box, int a, const Segment &row, const Visit &visit) {
   const auto is_open_face = [&](bool high, int at) {

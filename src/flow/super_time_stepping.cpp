@@ -14,11 +14,11 @@
 namespace eulastic {
 namespace {
 
-// Sides of the box as stages see them.
+// Boundaries of the box for the stages.
 struct StageSides : Sides {
-  bool fixed[3][2];  // here, and the normal velocity on it is given
-  bool open[3][2];   // here, and it is an unknown
-  bool any_beside;   // anything but closed sides that stay so: beside_row() has something to do
+  bool fixed[3][2];  // this rank touches the boundary, and the normal velocity on it is given
+  bool open[3][2];   // this rank touches the boundary, and the normal velocity on it is an unknown
+  bool any_beside;   // any boundary is open or an inflow, so that beside_row() is needed
 
   StageSides(const Box &box, const BoxSides &sides) : Sides(box), any_beside(false) {
     for (int d = 0; d < 3; ++d) {
@@ -30,19 +30,19 @@ struct StageSides : Sides {
       beyond[d] = open[d][1];
     }
   }
-  /// Whether a row lies on a low side that its component is normal to, and where it is given.
+  /// Whether a row lies on a low boundary that is normal to its component and has a given velocity.
   EULASTIC_INLINE bool holds(int a, const Segment &row) const {
     return (a == 1 && fixed[1][0] && row.j == 0) || (a == 2 && fixed[2][0] && row.k == 0);
   }
 };
 
-// Most stages in one pass over memory, the first one not counted: each more is a layer of ghosts to exchange and to
-// compute again.
+// Largest number of stages that share a pass over memory, without the first one. Every additional stage needs another
+// layer of ghosts to exchange and to recompute.
 constexpr int deepest = 4;
 
-// Stages number ... number + depth - 1; before them the first one, W_1, and after them v*, where the pass starts and
-// ends all. Stages alternate: the first of a pass reads W_j-1 in `now` and writes W_j over W_j-2 in `before`, the next
-// the other way.
+// The stages number ... number + depth - 1 of one pass over memory. The first pass begins with stage 1, W_1, and the
+// last one ends with v*. The first stage of a pass reads W_j-1 in `now` and replaces W_j-2 in `before` by W_j, the next
+// one vice versa.
 struct Pass {
   const Domain &domain;
   const ViscousStep &step;
@@ -51,9 +51,9 @@ struct Pass {
   Field &velocity_star;
   int number, depth;
   bool starts, ends;
-  double first, half;  // W_1 = first (M_0 + half M_1), the force at the start
+  double first, half;  // W_1 = first (M_0 + half M_1), with the force at the start of the step
   kernels::RklStage stage[deepest];
-  BoxSides increments[deepest];  // what is given on sides when a stage reads, less what was at the start
+  BoxSides increments[deepest];  // given values on boundaries when a stage reads, less those at the start
   std::vector<RigidStage> rigid;
 
   bool has_slope(const Segment &row) const {
@@ -64,7 +64,7 @@ struct Pass {
   }
 };
 
-// One stage on the points `row` of component a; force(i): the viscous term at offset i of the row.
+// Computes one stage on the points `row` of component a. force(i) returns the viscous term at offset i of the row.
 template <class Force>
 EULASTIC_INLINE void stage_row(const Pass &pass, int s, int a, const Segment &row, ConstView w, const Force &force,
                                View out) {
@@ -75,7 +75,7 @@ EULASTIC_INLINE void stage_row(const Pass &pass, int s, int a, const Segment &ro
     kernels::rkl_stage<false>(row, pass.stage[s], w, m, m, force, out);
 }
 
-// Walls move, and more comes in, by that from one time to another.
+// Returns boundary conditions whose velocities are the changes of the given ones between two times.
 BoxSides sides_of_increment(const BoxSides &box_sides, double from, double to) {
   BoxSides sides = box_sides;
   for (std::size_t d = 0; d < 3; ++d)
@@ -88,13 +88,15 @@ BoxSides sides_of_increment(const BoxSides &box_sides, double from, double to) {
   return sides;
 }
 
-// The viscous term as the stages know it. Where components see each other (`couples`), a stage has a pass of its own
-// that goes through all of them together; prepare() comes before each pass, surround() before each row of a stage.
+// Below are the viscous terms of the stages. If components are coupled (`couples`), a stage has a pass of its own,
+// which processes all components together. prepare() is called before each pass, surround() before each row of a stage.
 
-// nu lap W: components by themselves. What is behind sides is made row by row, as stages of a pass come to it.
+// nu lap W, with separate components. Ghosts behind boundaries are filled row by row, when the stages of a pass reach
+// them.
 struct UniformViscosity {
   static constexpr bool couples = false;
-  const double viscosity, beside_rigid = 1;  // in the coefficients of all faces; times that at cut faces
+  // viscosity: in the coefficients of all faces; beside_rigid: additional factor at cut faces
+  const double viscosity, beside_rigid = 1;
   const InverseSquares h;
   const int depth;
 
@@ -114,8 +116,8 @@ struct UniformViscosity {
     PetscFunctionReturn(0);
   }
 
-  // What a stage reads beside its points `at` in the direction that its component is normal to: what is given on an
-  // inflow side, the mirror image about an open one.
+  // Sets the values that a stage reads beside its points `at` in the direction normal to its component: the given
+  // velocity on an inflow boundary, and the mirror image about an open boundary.
   [[gnu::noinline]] static void beside_row(const Pass &pass, int s, int a, View w, const Segment &at) {
     const StageSides &sides = pass.sides;
     const Int3 &n = pass.domain.cells();
@@ -139,7 +141,7 @@ struct UniformViscosity {
     }
   }
 
-  // Across a periodic x and behind sides that the component is tangential to.
+  // Fills ghosts at the ends of a periodic x, and behind boundaries that are tangential to the component.
   template <int Dim>
   EULASTIC_INLINE void surround(const Pass &pass, int s, int a, View w, const Segment &at) const {
     const Int3 &n = pass.domain.cells();
@@ -196,8 +198,8 @@ EULASTIC_CLONES void stress_stage_3d(const Pass &pass, const Field &viscosity, i
   stress_stage<3>(pass, viscosity, s, a, faces, side, from, out);
 }
 
-// div tau(W)/rho of a viscosity that varies: two layers of ghosts, corners too. Cut faces of rigid bodies have the
-// viscosity of the fluid.
+// div tau(W)/rho with variable viscosity, which needs two layers of ghosts including corners. Cut faces of rigid bodies
+// have the viscosity of the fluid.
 struct LocalStress {
   static constexpr bool couples = true;
   static constexpr int depth = 1;
@@ -226,7 +228,7 @@ struct LocalStress {
       for (const int c : {a, a + 3}) prefetch(local.stress[c].row(next.j, next.k + 1) + piece.i_begin, piece.size());
   }
 
-  // Bodies have no stress along their surface on open sides.
+  // The stress along surfaces is omitted on open boundaries.
   template <int Dim>
   void row(const Pass &pass, int s, int a, const Field &from, View out, const Segment &row) const {
     for_faces(box, a, row, [&](const Segment &faces, int side) {
@@ -240,7 +242,7 @@ struct LocalStress {
   }
 };
 
-// The first stage of component a: M_0 for good, and W_1.
+// Computes the first stage of component a: W_1, and M_0 with the force at the start of the step.
 EULASTIC_CLONES void first_stage_row(const Pass &pass, int a, const Segment &row) {
   double *m = pass.work.rate[a].row(row.j, row.k), *out = pass.work.now[a].row(row.j, row.k);
   const double first = pass.first, half = pass.half;
@@ -253,7 +255,8 @@ EULASTIC_CLONES void first_stage_row(const Pass &pass, int a, const Segment &row
   for (int i = row.i_begin; i < row.i_end; ++i) out[i] = first * m[i];
 }
 
-// One stage where there may be rigid bodies: none on rows inside, and cut faces by themselves.
+// Computes one stage where there may be rigid bodies: rows inside bodies are skipped, and cut faces are computed
+// separately.
 template <int Dim, class Term>
 EULASTIC_INLINE void stage_beside_rigid(const Pass &pass, const Term &term, int s, int a, const Field &from, View out,
                                         const Segment &row) {
@@ -269,7 +272,7 @@ EULASTIC_INLINE void stage_beside_rigid(const Pass &pass, const Term &term, int 
   RigidStage::release(faces, row.i_begin, row.i_end, held, out.row(row.j, row.k));
 }
 
-// v* of component a.
+// Computes v* of component a.
 EULASTIC_CLONES void end_row(const Pass &pass, int a, ConstView w, const Segment &row) {
   const double *increment = w.row(row.j, row.k), *v = pass.step.velocity[a].row(row.j, row.k);
   double *out = pass.velocity_star[a].row(row.j, row.k);
@@ -277,7 +280,7 @@ EULASTIC_CLONES void end_row(const Pass &pass, int a, ConstView w, const Segment
   for (int i = row.i_begin; i < row.i_end; ++i) out[i] = increment[i] + v[i];
 }
 
-// What the row `next` of component a reads and writes that those before it did not.
+// Prefetches the data of row `next` of component a that earlier rows did not read or write.
 template <class Term>
 EULASTIC_INLINE void prefetch_rows(const Pass &pass, const Term &term, int stage, int a, const RowAhead &next) {
   const auto ask = [&](const Field &field, int k) { prefetch(field[a].row(next.j, k), pass.domain.cells()[0]); };
@@ -300,12 +303,12 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const Term &term, const St
   const StageSides &sides = pass.sides;
   const int a_begin = Term::couples ? 0 : task.field, a_end = Term::couples ? Dim : task.field + 1;
   order.go<Dim>(task, [&](int stage, Segment row, int j_end) EULASTIC_BODY {
-    const int s = stage - pass.starts;  // -1: W_1
+    const int s = stage - pass.starts;  // -1: stage 1, W_1
     Field &from = s % 2 ? pass.work.before : pass.work.now, &to = s % 2 ? pass.work.now : pass.work.before;
     const int first = row.j, i_end = row.i_end;
     for (; row.j < j_end; ++row.j)
       for (int a = a_begin; a < a_end; ++a) {
-        // Faces beyond the last cells are those of the component normal to them.
+        // Faces behind the last cells exist only for the component normal to the boundary.
         if (a != 1 && sides.beyond[1] && row.j == n[1]) continue;
         if (Dim == 3 && a != 2 && sides.beyond[2] && row.k == n[2]) continue;
         row.i_end = a == 0 ? i_end : i_end - sides.beyond[0];
@@ -342,7 +345,7 @@ void stages_3d(const Pass &pass, const LocalStress &term, const StagePass &order
   stages_of_task<3>(pass, term, order, task);
 }
 
-// No flow through sides, but what stages find on open ones.
+// Sets the normal velocity on boundaries to 0, except on open ones, where stages compute it.
 void close_walls(const Box &box, Field &velocity) {
   for (int d = 0; d < box.dimension(); ++d)
     if (box.is_wall(d)) close_wall_faces(box, velocity[d], d);
@@ -361,7 +364,8 @@ PetscErrorCode take_stages(const Domain &domain, GhostExchange &exchange, Term t
   Pass pass{domain,         step, sides, work, velocity_star, 2, 0, true, false, rkl_first_step(stages, step.dt),
             -0.5 * step.dt, {},   {},    {}};
   for (; !pass.ends; pass.starts = false) {
-    const int left = stages - pass.number + 1, passes = (left + term.depth - 1) / term.depth;  // of equal depth
+    // passes have nearly equal depths
+    const int left = stages - pass.number + 1, passes = (left + term.depth - 1) / term.depth;
     pass.depth = passes == 0 || (Term::couples && pass.starts) ? 0 : (left + passes - 1) / passes;
     pass.ends = pass.depth == left;
     pass.rigid.clear();

@@ -1,4 +1,4 @@
-// What the kernel of the stress along surfaces reads, out of the fields of velocity and viscosity.
+// Input of the kernel for the stress along surfaces, from the fields of velocity and viscosity.
 #pragma once
 
 #include "flow/local_viscosity.hpp"
@@ -6,7 +6,7 @@
 
 namespace eulastic {
 
-/// The stress along surfaces around the centres of a row; two ghosts of v.
+/// Returns the stress along surfaces around the centres of a row. v needs two ghosts.
 template <int Dim>
 EULASTIC_INLINE kernels::TangentialStress<Dim> tangential_stress(const Box &box, const Field &viscosity,
                                                                  const Field &velocity, int j, int k) {

@@ -22,10 +22,10 @@ EULASTIC_INLINE void tangential_row(const Box &box, const Field &viscosity, cons
   for (int i = row.i_begin; i < row.i_end; ++i) {
     const typename kernels::TangentialStress<Dim>::Rate rate = stress.rate(i);
     const double excess = stress.excess[i];
-    // Where there is none the rate may be anything. As a condition of the result it would keep the loop scalar.
-    const std::uint64_t some = excess != 0 ? ~std::uint64_t{0} : 0;
-    const auto times = [some, excess](double r) EULASTIC_BODY {
-      return excess * __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, r) & some);
+    // Where the excess is 0 the rate may be undefined. A select on the result would prevent vectorisation.
+    const std::uint64_t mask = excess != 0 ? ~std::uint64_t{0} : 0;
+    const auto times = [mask, excess](double r) EULASTIC_BODY {
+      return excess * __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, r) & mask);
     };
     xx[i] = times(rate.xx);
     yy[i] = times(rate.yy);
@@ -70,12 +70,13 @@ EULASTIC_CLONES void add_tangential_force_3d(const Box &box, const Field &stress
   add_tangential_force<3>(box, stress, scale, a, row, out);
 }
 
-// What a piece that comes later reads and writes that the ones before it did not.
+// Prefetches the data of a later segment that earlier ones did not read or write.
 void prefetch_ahead(const LocalViscosity &viscosity, const Field &velocity, const Segment &cells) {
-  const auto ask = [&cells](const double *row) { prefetch(row + cells.i_begin, cells.size()); };
-  for (int d = 0; d < 3; ++d) ask(velocity[d].row(cells.j, cells.k + 1));
-  for (int f = viscosity_along_surface(3); f < viscosity_fields(3); ++f) ask(viscosity.fields[f].row(cells.j, cells.k));
-  for (int c = 0; c < viscosity.stress.count(); ++c) ask(viscosity.stress[c].row(cells.j, cells.k));
+  const auto prefetch_piece = [&cells](const double *row) { prefetch(row + cells.i_begin, cells.size()); };
+  for (int d = 0; d < 3; ++d) prefetch_piece(velocity[d].row(cells.j, cells.k + 1));
+  for (int f = viscosity_along_surface(3); f < viscosity_fields(3); ++f)
+    prefetch_piece(viscosity.fields[f].row(cells.j, cells.k));
+  for (int c = 0; c < viscosity.stress.count(); ++c) prefetch_piece(viscosity.stress[c].row(cells.j, cells.k));
 }
 
 }  // namespace

@@ -12,10 +12,10 @@
 namespace eulastic {
 namespace {
 
-constexpr int ghosts = 2;  // of phi: edges of a cell in the ghost layer
+constexpr int ghosts = 2;  // ghosts of phi: for the edges of a cell in the ghost layer
 
-// Adds a phase to the solid fraction of a row, to what its fluidity 1/nu has beyond the fluid's and to its share of the
-// largest difference of viscosities.
+// Adds a phase to the solid fraction of a row, to the excess of its fluidity 1/nu over that of the fluid, and to its
+// difference of viscosity relative to the largest one.
 EULASTIC_CLONES void add_phase_row(const double *phi, double excess, double share, int begin, int end, double *solid,
                                    double *fluidity, double *difference) {
 #pragma omp simd
@@ -27,14 +27,14 @@ EULASTIC_CLONES void add_phase_row(const double *phi, double excess, double shar
   }
 }
 
-// Where phases overlap their fractions share the cell.
+// Where the sum of fractions exceeds 1, it is normalised.
 EULASTIC_CLONES void end_mixture_row(double fluid, const double *solid, int begin, int end, double *fluidity,
                                      double *difference) {
 #pragma omp simd
   for (int i = begin; i < end; ++i) {
-    const double all = solid[i] > 1 ? solid[i] : 1;
-    fluidity[i] = fluid + fluidity[i] / all;
-    difference[i] /= all;
+    const double divisor = solid[i] > 1 ? solid[i] : 1;
+    fluidity[i] = fluid + fluidity[i] / divisor;
+    difference[i] /= divisor;
   }
 }
 
@@ -49,16 +49,16 @@ EULASTIC_CLONES void centre_row(int begin, int end, double *values) {
   for (int i = begin; i < end; ++i) values[i] = 1 / values[i];
 }
 
-// What fluid and phases have in the cells together: nu = fluid + most difference as arithmetic mean, 1/fluidity as
-// harmonic one.
+// The mixture of fluid and phases in the cells: the arithmetic mean is nu = fluid + most difference, the harmonic mean
+// 1/fluidity.
 struct Mixture {
   double fluid, most = 0;
   const Field &fluidity, &difference;
   std::vector<double> excess, share;  // of every phase
 
-  Mixture(const Fluid &of, const std::vector<Phase> &phases, const Field &f, const Field &d)
-      : fluid(of.kinematic_viscosity()), fluidity(f), difference(d) {
-    for (const Phase &phase : phases) share.push_back(viscosity_of(phase.material, of) / of.density - fluid);
+  Mixture(const Fluid &carrier, const std::vector<Phase> &phases, const Field &f, const Field &d)
+      : fluid(carrier.kinematic_viscosity()), fluidity(f), difference(d) {
+    for (const Phase &phase : phases) share.push_back(viscosity_of(phase.material, carrier) / carrier.density - fluid);
     for (const double s : share) most = std::fabs(s) > std::fabs(most) ? s : most;
     for (double &s : share) {
       excess.push_back(1 / (fluid + s) - 1 / fluid);
@@ -80,8 +80,8 @@ void fill_row(const Box &box, const std::vector<Phase> &phases, const Mixture &m
   end_mixture_row(1 / mixture.fluid, solid, begin, end, fluidity, difference);
 }
 
-// What the arithmetic mean has more than the harmonic one, of a cell that is cut its mean over the components of a
-// tensor there and on the edges around; its normal. Cells as large as `spacing`.
+// Computes the excess of the arithmetic over the harmonic mean in cells that a surface cuts, averaged over the
+// components of a tensor at the centre and on the edges around, and the normal of the surface.
 template <int Dim>
 EULASTIC_INLINE void along_surface(const Segment &row, const Mixture &mixture, const Real3 &spacing,
                                    const View *fields) {
@@ -96,14 +96,16 @@ EULASTIC_INLINE void along_surface(const Segment &row, const Mixture &mixture, c
   const auto around = [=](std::ptrdiff_t i, std::ptrdiff_t a, std::ptrdiff_t b) EULASTIC_BODY {
     return 0.25 * ((edge(i, a, b) + edge(i + a + b, a, b)) + (edge(i + a, a, b) + edge(i + b, a, b)));
   };
-  double *more = fields[0].row(row.j, row.k), *nx = fields[1].row(row.j, row.k), *ny = fields[2].row(row.j, row.k);
+  double *excess_viscosity = fields[0].row(row.j, row.k), *nx = fields[1].row(row.j, row.k),
+         *ny = fields[2].row(row.j, row.k);
   double *nz = Dim == 3 ? fields[3].row(row.j, row.k) : ny;
 #pragma omp simd
   for (int i = row.i_begin; i < row.i_end; ++i) {
-    const double here = kernels::fma(most, q[i], fluid) - 1 / F[i];
-    const double mean = Dim == 2 ? 0.5 * (here + around(i, x, y))
-                                 : (3 * here + 2 * ((around(i, y, z) + around(i, x, z)) + around(i, x, y))) / 9;
-    more[i] = here > least ? mean : 0;
+    const double excess_at_centre = kernels::fma(most, q[i], fluid) - 1 / F[i];
+    const double mean = Dim == 2
+                            ? 0.5 * (excess_at_centre + around(i, x, y))
+                            : (3 * excess_at_centre + 2 * ((around(i, y, z) + around(i, x, z)) + around(i, x, y))) / 9;
+    excess_viscosity[i] = excess_at_centre > least ? mean : 0;
     const kernels::InterfaceNormal n = kernels::interface_normal<Dim>(q + i, x, y, z);
     const double a = ix * n.a, b = iy * n.b, c = iz * n.c, size = __builtin_sqrt((a * a + b * b) + c * c);
     const double scale = size > 0 ? 1 / size : 0;
@@ -120,7 +122,7 @@ EULASTIC_CLONES void along_surface_3d(const Segment &row, const Mixture &mixture
   along_surface<3>(row, mixture, h, fields);
 }
 
-// Beside sides of the box nothing: no edge on a side feels it. Behind planes of symmetry all is mirrored.
+// Clears the excess beside boundaries other than planes of symmetry, so that edges on a boundary are not affected.
 void clear_beside_sides(const Box &box, const BoxSides &sides, const Segment &row, double *values) {
   const int place[3] = {0, row.j, row.k};
   for (const auto [d, high] : box.sides()) {
@@ -134,16 +136,16 @@ void clear_beside_sides(const Box &box, const BoxSides &sides, const Segment &ro
   }
 }
 
-// Beside rigid bodies neither: what faces inside of them hold is nobody's.
+// Clears the excess beside rigid bodies, because the velocity of faces inside them is not that of the fluid.
 void clear_beside_rigid(const Box &box, const std::vector<Phase> &phases, const Segment &row, double *values) {
-  const int deep = box.dimension() == 3 ? 1 : 0;
+  const int layers_z = box.dimension() == 3 ? 1 : 0;
   for (const Phase &phase : phases) {
     if (!phase.material.is_rigid()) continue;
     const ConstView phi = phase.fraction[0];
     for (int i = row.i_begin; i < row.i_end; ++i) {
       if (values[i] == 0) continue;
       double solid = 0;
-      for (int k = row.k - deep; k <= row.k + deep; ++k)
+      for (int k = row.k - layers_z; k <= row.k + layers_z; ++k)
         for (int j = row.j - 1; j <= row.j + 1; ++j)
           for (int x = i - 1; x <= i + 1; ++x) solid = std::max(solid, phi(x, j, k));
       if (solid > 0) values[i] = 0;
@@ -158,29 +160,29 @@ void clear(const ActiveSegments &cells, View field) {
   }
 }
 
-// visit(j, k, scratch) for all rows, those of `layers` of ghosts too.
+// Calls visit(j, k, scratch) for all rows, including `layers` ghost layers.
 template <class Row>
 void for_rows_with_ghosts(const Box &box, int layers, const Row &visit) {
-  const int deep = box.dimension() == 3 ? layers : 0, parts = row_parts(box);
-  const int rows = box.cells()[1] + 2 * layers, planes = box.cells()[2] + 2 * deep;
+  const int layers_z = box.dimension() == 3 ? layers : 0, parts = row_parts(box);
+  const int rows = box.cells()[1] + 2 * layers, planes = box.cells()[2] + 2 * layers_z;
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(std::size_t(rows) * planes, part, parts);
     RowScratch scratch(box, 1);
     for (std::size_t r = piece.begin; r < piece.end; ++r)
-      visit(static_cast<int>(r % rows) - layers, static_cast<int>(r / rows) - deep, scratch.row(0));
+      visit(static_cast<int>(r % rows) - layers, static_cast<int>(r / rows) - layers_z, scratch.row(0));
   });
 }
 
 }  // namespace
 
-// Stress is G phi dev(B): of a cell that is phi full the ratio of stiffness to viscosity is rho c^2 times
-// phi ((1 - phi)/mu_f + phi/mu_s), largest in the body or, if that is more than twice as viscous, in cells of its
-// surface.
+// The stress is G phi dev(B). In a cell with the solid fraction phi the ratio of stiffness to viscosity is rho c^2
+// times phi ((1 - phi)/mu_f + phi/mu_s). Its maximum is in the body or, if this is more than twice as viscous, in cells
+// at its surface.
 void ViscosityContrast::add(const Material &material, double stiffness) {
   const double own = material.viscosity > 0 ? material.viscosity : fluid;
   least = std::min(least, own);
   most = std::max(most, own);
-  // Membranes bear more than ten times the step of a tension as large as their moduli.
+  // A quarter of the moduli: membranes are stable with steps more than ten times as long as for a tension of that size.
   constexpr double share = 0.25;
   const double tension =
       std::max(material.surface_tension, material.is_membrane() ? share * material.membrane.largest_modulus() : 0);

@@ -1,4 +1,4 @@
-// The viscosity where a species has another one than the fluid; docs/method.md, "Viscosity contrast".
+// Variable viscosity, where a species has another viscosity than the fluid; docs/method.md, section 16.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -12,32 +12,33 @@
 
 namespace eulastic {
 
-/// How far the viscosities of fluid and bodies lie apart, and what follows for the time step.
+/// Range of the viscosities of fluid and bodies, and parameters of surfaces that limit the time step.
 struct ViscosityContrast {
-  double fluid, least, most;                                      ///< dynamic viscosities
-  double kelvin_voigt = std::numeric_limits<double>::infinity();  ///< least 2 mu/(rho c^2) of any cell with solid
-  double surface_tension = 0;                                     ///< the largest
-  double capillary_speed = 0;  ///< the largest sigma over the mean viscosity on both sides of a surface
-  double bending_modulus = 0;  ///< the largest
-  double bending_rate = 0;     ///< the largest E_b over the mean viscosity on both sides of a surface
+  double fluid, least, most;  ///< dynamic viscosities of the fluid, and the extremes of all
+  double kelvin_voigt = std::numeric_limits<double>::infinity();  ///< least 2 mu/(rho c^2) of all cells with solid
+  double surface_tension = 0;                                     ///< largest of all species
+  double capillary_speed = 0;  ///< largest sigma over the mean viscosity on both sides of a surface
+  double bending_modulus = 0;  ///< largest of all species
+  double bending_rate = 0;     ///< largest E_b over the mean viscosity on both sides of a surface
 
   explicit ViscosityContrast(const Fluid &f) : fluid(f.viscosity), least(f.viscosity), most(f.viscosity) {}
-  /// A body, with the largest rho c^2 in it.
+  /// Adds a body with the largest rho c^2 in it.
   void add(const Material &material, double stiffness);
   bool exists() const { return least < most; }
-  /// Whether all viscosities lie within that factor of the fluid's.
+  /// Whether all viscosities are within this factor of that of the fluid.
   bool within(double factor) const { return most <= factor * fluid && fluid <= factor * least; }
-  /// Up to this the pressure of the next step can be foreseen; beyond, it would swing for a hundred steps and more.
+  /// Whether the pressure may be extrapolated to the next step. Beyond the factor it would oscillate for a hundred
+  /// steps and more (docs/method.md, section 16).
   bool settles() const { return exists() && within(20); }
 };
 
-/// Viscosity where it varies, of the phases of some moment.
+/// The variable viscosity for given phases.
 struct LocalViscosity {
-  Field fields;             ///< flow/local_viscosity.hpp
-  ActiveSegments cut;       ///< cells around surfaces, a layer of ghosts included
-  ActiveSegments stressed;  ///< those of them that have a viscosity along the surface, and some more
-  ActiveSegments beside;    ///< points whose faces feel them
-  Field stress;             ///< symmetric, at centres: work space of the force; 0 but for `stressed`
+  Field fields;             ///< see flow/local_viscosity.hpp
+  ActiveSegments cut;       ///< cells around surfaces, including one ghost layer
+  ActiveSegments stressed;  ///< cells of `cut` with an excess along the surface, and further cells
+  ActiveSegments beside;    ///< points whose faces feel the stress of these cells
+  Field stress;             ///< symmetric, at centres; work space, 0 outside `stressed`
 
   LocalViscosity() = default;
   explicit LocalViscosity(const Box &box);
@@ -45,9 +46,9 @@ struct LocalViscosity {
   explicit operator bool() const { return static_cast<bool>(fields); }
 };
 
-/// Harmonic means, weighted by the solid fractions at centres and of four centres on edges; along surfaces what
-/// arithmetic means have more, but for cells beside sides of the box that are no planes of symmetry. Centres with one
-/// layer of ghosts, edges of owned cells on both sides; two ghosts of phi.
+/// Computes harmonic means, weighted by the solid fractions at centres and over four centres on edges, and the excess
+/// of arithmetic means along surfaces, which is 0 in cells beside boundaries other than planes of symmetry. Sets
+/// centres in one ghost layer and all edges of owned cells. phi needs two ghosts.
 PetscErrorCode compute_viscosity(const Box &box, const Fluid &fluid, const BoxSides &sides,
                                  const std::vector<Phase> &phases, LocalViscosity *viscosity);
 

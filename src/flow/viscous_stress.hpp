@@ -1,4 +1,4 @@
-// What the deviatoric stress of varying viscosity does outside the viscous stages: its force, and the pressure update.
+// The deviatoric stress with variable viscosity outside the viscous stages: its force, and the rotational update.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -6,11 +6,13 @@
 
 namespace eulastic {
 
-/// out += scale div(tau(v))/rho at owned faces; two ghosts of v, corners included. `viscosity`: compute_viscosity().
+/// Adds scale div(tau(v))/rho to `out` at owned faces. v needs two ghosts, including corners. `viscosity`: from
+/// compute_viscosity().
 PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, double scale, const Field &velocity,
                                  Field &out);
 
-/// p -= factor nu D*, in one ghost layer too: the rotational update where nu is that of the place.
+/// Subtracts factor nu D* with the local nu from the pressure, also in one ghost layer: the rotational update with
+/// variable viscosity.
 PetscErrorCode rotate_pressure(const Box &box, const Field &viscosity, double factor, const Field &divergence,
                                Field &pressure);
 

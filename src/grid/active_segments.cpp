@@ -10,16 +10,17 @@ namespace {
 
 constexpr int vector_length = 8;
 
-// Whether one of n flags is set, n <= 8.
+// Whether any of n <= 8 flags is set.
 bool any_set(const unsigned char *flags, int n) {
-  std::uint64_t together = 0;
-  static_assert(sizeof(together) == vector_length);
+  std::uint64_t all_flags = 0;
+  static_assert(sizeof(all_flags) == vector_length);
   if (n < vector_length) return std::memchr(flags, 1, n) != nullptr;
-  std::memcpy(&together, flags, sizeof(together));
-  return together != 0;
+  std::memcpy(&all_flags, flags, sizeof(all_flags));
+  return all_flags != 0;
 }
 
-// to |= from, bytes; where they are the same, the later ones are read before they are written.
+// Computes to[i] |= from[i]. If `to` and `from` overlap, `from` must lie after `to`: its bytes are read before they are
+// written.
 void join(std::size_t n, const unsigned char *from, unsigned char *to) {
   for (std::size_t i = 0; i < n; ++i) to[i] |= from[i];
 }
@@ -29,7 +30,7 @@ void compare(std::size_t n, unsigned char wanted, unsigned char *flags) {
 
 }  // namespace
 
-void ActiveSegments::start(const Int3 &begin, const Int3 &end) {
+void ActiveSegments::reset(const Int3 &begin, const Int3 &end) {
   begin_ = begin;
   points_x_ = end[0] - begin[0];
   rows_y_ = end[1] - begin[1];
@@ -44,8 +45,8 @@ double ActiveSegments::points() const noexcept {
   return sum;
 }
 
-// Adds the runs of vectors of row (j, k) of which a point is marked; none if `marked` is null. Whole ones: the last
-// points of a run that ends within a vector would be done one by one.
+// Appends the segments of row (j, k) that cover all marked points, in whole vectors because the remainder of a vector
+// loop runs point by point. A null `marked` marks no point.
 void ActiveSegments::append_row(const unsigned char *marked, int j, int k, std::vector<Segment> *segments) const {
   if (skips_nothing()) {
     segments->push_back({begin_[0], begin_[0] + points_x_, j, k});
@@ -63,17 +64,18 @@ void ActiveSegments::append_row(const unsigned char *marked, int j, int k, std::
   }
 }
 
-// append(j, k, scratch row, segments) adds those of one row, counted from 0; here all rows, planes in parallel.
+// Calls append(j, k, scratch, segments) for every row, counted from 0, to append the segments of that row. Planes are
+// processed in parallel.
 template <class Append>
 void ActiveSegments::append_rows(int parts, const Append &append) {
-  struct Found {
+  struct PartSegments {
     std::vector<Segment> segments;
     std::vector<int> ends;  // of every row
   };
-  std::vector<Found> found(parts);
+  std::vector<PartSegments> found(parts);
   in_parallel(parts, parts, [&](int part) {
     const Piece planes(rows_z_, part, parts);
-    Found &own = found[part];
+    PartSegments &own = found[part];
     std::vector<unsigned char> scratch(points_x_);
     for (int k = static_cast<int>(planes.begin); k < static_cast<int>(planes.end); ++k)
       for (int j = 0; j < rows_y_; ++j) {
@@ -81,15 +83,16 @@ void ActiveSegments::append_rows(int parts, const Append &append) {
         own.ends.push_back(static_cast<int>(own.segments.size()));
       }
   });
-  for (const Found &own : found) {
+  for (const PartSegments &own : found) {
     const int before = static_cast<int>(segments_.size());
     for (const int end : own.ends) first_.push_back(before + end);
     segments_.insert(segments_.end(), own.segments.begin(), own.segments.end());
   }
 }
 
-// Points where the flags of all centres within reach together give `wanted`, which idle rows alone do not. Reach by
-// reach: along x, y and z.
+// Builds the segments of all points for which the bitwise or of flag(value) over the centres within reach equals
+// `wanted`. Idle rows, where all values are 0, do not have all wanted flags by themselves. Flags are combined along x,
+// then y, then z.
 template <class Flag>
 void ActiveSegments::build_rows(const Box &box, ConstView value, const OccupiedRows &rows, Flag flag, int wanted,
                                 int low, int high) {
@@ -97,7 +100,7 @@ void ActiveSegments::build_rows(const Box &box, ConstView value, const OccupiedR
   const int reach = low + high, reach_z = flat ? 0 : reach, low_z = flat ? 0 : low, parts = row_parts(box);
   const std::size_t width = points_x_, plane = width * rows_y_;
   std::vector<unsigned char> marked(static_cast<std::size_t>(rows_y_) * (rows_z_ + reach_z), 0);
-  mask_.resize(plane * (rows_z_ + reach_z));  // what is within reach along x and y, on the rows that are `marked`
+  mask_.resize(plane * (rows_z_ + reach_z));  // flags combined along x and y, valid in the rows that `marked` names
   const auto mark_plane = [&](int k, std::vector<unsigned char> &flags) {
     for (int j = 0; j < rows_y_ + reach; ++j) {
       const int from_j = begin_[1] + j - low, from_k = begin_[2] + k - low_z;
@@ -111,7 +114,7 @@ void ActiveSegments::build_rows(const Box &box, ConstView value, const OccupiedR
       for (int i = std::max(span.begin, first) - first; i < std::min(span.end, end) - first; ++i)
         any |= flags[i] = flag(q[i]);
       if (any == 0) continue;
-      for (int done = 1, step; done <= reach; done += step) {  // of reach + 1 flags
+      for (int done = 1, step; done <= reach; done += step) {  // `done` flags are combined already, of reach + 1
         step = std::min(done, reach + 1 - done);
         join(flags.size() - step, flags.data() + step, flags.data());
       }
@@ -144,7 +147,7 @@ void ActiveSegments::build_rows(const Box &box, ConstView value, const OccupiedR
 
 void ActiveSegments::build(const Box &box, ConstView value, const OccupiedRows &rows, double threshold, int low,
                            int high) {
-  start({0, 0, 0}, {box.points_end(0, true), box.points_end(1, true), box.points_end(2, true)});
+  reset({0, 0, 0}, {box.points_end(0, true), box.points_end(1, true), box.points_end(2, true)});
   build_rows(
       box, value, rows, [threshold](double q) { return static_cast<unsigned char>(q >= threshold); }, 1, low, high);
 }
@@ -152,14 +155,14 @@ void ActiveSegments::build(const Box &box, ConstView value, const OccupiedRows &
 void ActiveSegments::build_band(const Box &box, ConstView value, const OccupiedRows &rows, int margin) {
   const Int3 &n = box.cells();
   const int margin_z = box.dimension() == 3 ? margin : 0;
-  start({-margin, -margin, -margin_z}, {n[0] + margin, n[1] + margin, n[2] + margin_z});
+  reset({-margin, -margin, -margin_z}, {n[0] + margin, n[1] + margin, n[2] + margin_z});
   build_rows(
       box, value, rows, [](double q) { return static_cast<unsigned char>((q != 0) | (q != 1) << 1); }, 3, 1, 1);
 }
 
 void ActiveSegments::build_within(const Box &box, const ActiveSegments &cells, ConstView value) {
   const Int3 begin = cells.begin_;
-  start(begin, {begin[0] + cells.points_x_, begin[1] + cells.rows_y_, begin[2] + cells.rows_z_});
+  reset(begin, {begin[0] + cells.points_x_, begin[1] + cells.rows_y_, begin[2] + cells.rows_z_});
   append_rows(row_parts(box), [&](int j, int k, unsigned char *mask, std::vector<Segment> *segments) {
     const double *values = value.row(begin[1] + j, begin[2] + k) + begin[0];
     std::fill_n(mask, points_x_, 0);
@@ -171,19 +174,20 @@ void ActiveSegments::build_within(const Box &box, const ActiveSegments &cells, C
 
 void ActiveSegments::build_faces(const Box &box, const ActiveSegments &cells) {
   const Int3 begin = cells.begin_;
-  start(begin, {begin[0] + cells.points_x_, begin[1] + cells.rows_y_, begin[2] + cells.rows_z_});
+  reset(begin, {begin[0] + cells.points_x_, begin[1] + cells.rows_y_, begin[2] + cells.rows_z_});
   append_rows(row_parts(box), [&](int j, int k, unsigned char *mask, std::vector<Segment> *segments) {
     std::fill_n(mask, points_x_, 0);
-    const auto paint = [&](int row_j, int row_k) {
+    const auto mark = [&](int row_j, int row_k) {
       for (const Segment &s : cells.row(begin[1] + row_j, begin[2] + row_k))
         std::fill_n(mask + (s.i_begin - begin[0]), std::min(s.size() + 1, begin[0] + points_x_ - s.i_begin), 1);
     };
-    paint(j, k);
-    if (j > 0) paint(j - 1, k);
-    if (k > 0) paint(j, k - 1);
+    mark(j, k);
+    if (j > 0) mark(j - 1, k);
+    if (k > 0) mark(j, k - 1);
     const std::size_t first = segments->size();
     append_row(mask, begin[1] + j, begin[2] + k, segments);
-    for (std::size_t s = first; s < segments->size(); ++s)  // one face more than cells, not eight
+    // Segments of faces end one face after the cells instead of filling a vector.
+    for (std::size_t s = first; s < segments->size(); ++s)
       while (!mask[(*segments)[s].i_end - 1 - begin[0]]) --(*segments)[s].i_end;
   });
 }

@@ -1,4 +1,4 @@
-// The runs of cells, row by row, on which something has to be computed.
+// Lists, row by row, the runs of cells on which a routine has to work.
 #pragma once
 
 #include "grid/box.hpp"
@@ -8,8 +8,8 @@
 
 namespace eulastic {
 
-/// Segments ordered by row. Rows cover the points of edge fields: one more than the cells at high walls; those of
-/// a band cover the cells and `margin` layers around them.
+/// Segments in the order of rows. The rows cover the points of edge fields, which are one more than the cells at high
+/// boundaries; those of a band cover the cells and `margin` ghost layers around them.
 class ActiveSegments {
 public:
   struct Range {
@@ -18,27 +18,28 @@ public:
     const Segment *end() const noexcept { return last; }
   };
 
-  /// Points (i,j,k) for which one of the centres (i + di, j + dj, k + dk), -low <= di,dj,dk <= high, has
-  /// value >= threshold. In whole vectors of 8 points, where the row has them, so a superset; `value` needs that
-  /// many ghosts. Idle rows of `rows` are not read.
+  /// Lists the points (i,j,k) for which a centre (i + di, j + dj, k + dk), -low <= di,dj,dk <= high, has value >=
+  /// threshold. Segments consist of whole vectors of 8 points where the row has them, so that they contain further
+  /// points. `value` needs low and high ghosts; idle rows of `rows` are not read.
   void build(const Box &box, ConstView value, const OccupiedRows &rows, double threshold, int low, int high);
-  /// Cells, `margin` layers of ghosts included, that with their neighbours (corners too) are neither all 0 nor all 1,
-  /// and some more. `value` needs margin + 1 ghosts.
+  /// Lists the cells, including `margin` ghost layers, that are together with their neighbours (corners too) neither
+  /// all 0 nor all 1, and further cells to fill vectors. `value` needs margin + 1 ghosts.
   void build_band(const Box &box, ConstView value, const OccupiedRows &rows, int margin);
-  /// Those of `cells` whose value is not 0, and some more.
+  /// Lists the points of `cells` whose value is not 0, and further points to fill vectors.
   void build_within(const Box &box, const ActiveSegments &cells, ConstView value);
-  /// The low faces, in all directions, of `cells` and of their upper neighbours, and some more.
+  /// Lists the low faces, in all directions, of `cells` and of their upper neighbours. Segments begin at a multiple
+  /// of 8.
   void build_faces(const Box &box, const ActiveSegments &cells);
 
   Range row(int j, int k) const noexcept {
     const int r = (j - begin_[1]) + rows_y_ * (k - begin_[2]);
     return {segments_.data() + first_[r], segments_.data() + first_[r + 1]};
   }
-  /// Whether there is such a row, without segments.
+  /// Whether row (j, k) exists and has no segments.
   bool idle(int j, int k) const noexcept {
     return j >= begin_[1] && j < begin_[1] + rows_y_ && row(j, k).begin() == row(j, k).end();
   }
-  /// Whether none of the rows j_begin <= j < j_end of plane k has segments; of those that there are.
+  /// Whether the rows j_begin <= j < j_end of plane k, as far as they exist, have no segments.
   bool idle_rows(int j_begin, int j_end, int k) const noexcept {
     const int r = rows_y_ * (k - begin_[2]) - begin_[1];
     return first_[r + j_begin] == first_[r + std::min(j_end, begin_[1] + rows_y_)];
@@ -46,10 +47,10 @@ public:
   const std::vector<Segment> &all() const noexcept { return segments_; }
   int rows_y() const noexcept { return rows_y_; }
   int rows_z() const noexcept { return rows_z_; }
-  double points() const noexcept;  ///< sum of lengths
+  double points() const noexcept;  ///< number of points in all segments
 
 private:
-  void start(const Int3 &begin, const Int3 &end);
+  void reset(const Int3 &begin, const Int3 &end);
   template <class Flag>
   void build_rows(const Box &box, ConstView value, const OccupiedRows &rows, Flag flag, int wanted, int low, int high);
   void append_row(const unsigned char *marked, int j, int k, std::vector<Segment> *segments) const;

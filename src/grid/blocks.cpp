@@ -7,7 +7,7 @@ Sides::Sides(const Box &box) : wraps_x(box.wraps_x()), cells_x(box.cells()[0]) {
   for (int d = 0; d < 3; ++d) {
     wall[d][0] = box.touches_low(d);
     wall[d][1] = box.touches_high(d);
-    alone[d] = d >= box.dimension() || (d == 0 && wraps_x);
+    unextended[d] = d >= box.dimension() || (d == 0 && wraps_x);
   }
 }
 
@@ -17,14 +17,14 @@ int StagePass::depth(const Box &box, const Split &split, int least, int most) {
   for (int more = least + 1; more <= std::min(most, box.layout().ghosts[0]); ++more) {
     double share = 1;
     for (int d = 0; d < box.dimension(); ++d)
-      if (!sides.alone[d] && (split.parts(d) > 1 || box.boundary(d) == Boundary::periodic))
+      if (!sides.unextended[d] && (split.parts(d) > 1 || box.boundary(d) == Boundary::periodic))
         share *= 1 + 2.0 * (more - 1) * split.parts(d) / box.domain_cells()[d];
     if (share < 1.25) depth = more;
   }
   return depth;
 }
 
-// None with fewer slices than the stages of its two sides leave.
+// Every thread needs at least as many slices as the stages leave out at both ends of its part.
 int StagePass::threads_of_pass() const {
   const int slices = box_.cells()[box_.dimension() - 1];
   return std::max(1, std::min(row_parts(box_), slices / (2 * depth_)));
@@ -40,10 +40,10 @@ std::vector<StagePass::Task> StagePass::tasks(int team) const {
   return tasks;
 }
 
-// Of one stage, between the slices of every two threads; rows are shared.
+// Tasks of one stage: the slices that the threads left out between their parts. In 3-D the threads share their rows.
 std::vector<StagePass::Task> StagePass::tasks_between(int team, int stage) const {
   const bool flat = box_.dimension() == 2;
-  const int layers = most_ - stage, shares = flat ? 1 : team;
+  const int layers = first_layers_ - stage, shares = flat ? 1 : team;
   const int first = -sides_.low(1, layers), rows = box_.cells()[1] + sides_.high(1, layers) - first;
   std::vector<Task> tasks;
   for (const Task &lower : this->tasks(team))

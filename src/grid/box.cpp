@@ -25,8 +25,8 @@ Box::Box(const DomainShape &domain, const Int3 &begin, const Int3 &cells, int gh
     spacing_[d] = domain.length[d] / domain.cells[d];
     layout_.ghosts[d] = d < dimension() ? ghosts : 0;
   }
-  // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would fall on few cache sets. Planes and fields are
-  // whole rows, so that an exchange can move rows.
+  // Strides that are multiples of 512 B (rows) or 4 KiB (planes) would map to few cache sets. Planes and fields consist
+  // of whole rows, so that a message can move whole rows.
   layout_.sy = round_up(cells[0] + 2 * ghosts + is_wall(0), 8);
   if (layout_.sy % 64 == 0) layout_.sy += 8;
   layout_.sz = layout_.sy * (cells[1] + 2 * layout_.ghosts[1] + is_wall(1));
@@ -70,8 +70,8 @@ std::vector<Segment> Box::cells_at(int d, bool high, int layers) const {
   return touches(d, high) ? rows_between(begin, end) : std::vector<Segment>();
 }
 
-std::vector<Box::Side> Box::sides() const {
-  std::vector<Side> all;
+std::vector<Box::BoundaryFace> Box::sides() const {
+  std::vector<BoundaryFace> all;
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2 && is_wall(d); ++high) all.push_back({d, high == 1});
   return all;

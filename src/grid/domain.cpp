@@ -6,10 +6,12 @@
 namespace eulastic {
 namespace {
 
-constexpr int sum_block = 256;  // x is split at multiples of it, so that row sums do not depend on the split
+// Block length of the exact sums. x is split at multiples of it, so that sums over rows do not depend on the split.
+constexpr int sum_block = 256;
 
-// First cell of each of `parts` ranks: multiples of a power of two, so that coarse grids have whole cells on every
-// rank, as large as unevenness of an eighth allows; x in whole blocks where there are enough of them.
+// Returns the first cell of each of `parts` ranks. They are multiples of a power of two, so that coarse grids have
+// whole cells on every rank, as large as an imbalance of one eighth permits; in x multiples of sum_block if there are
+// enough cells.
 std::vector<int> split(int cells, int parts, bool in_blocks) {
   int unit = cut_unit(cells, parts);
   while (cells % (2 * unit * parts) == 0 && cells / parts >= 4 * unit) unit *= 2;
@@ -42,40 +44,40 @@ bool fits(const GridSpec &spec, const Int3 &ranks) {
 }  // namespace
 
 Int3 Domain::decompose(const GridSpec &spec, int ranks) {
-  constexpr double worth = 1.3;   // of the cost, before x is split more than it must be
-  constexpr double share = .125;  // of a cell's time in that of a layer's ghost cell, in all exchanges of a step
-  Int3 best{0, 0, 0}, shorter{0, 0, 0};
+  constexpr double min_cost_ratio = 1.3;  // ratio of costs from which x is split more than necessary
+  constexpr double cell_cost = .125;  // relative to the cost of a ghost cell of one layer in all exchanges of a step
+  Int3 best{0, 0, 0}, with_shorter_rows{0, 0, 0};
   if (!spec.starts[0].empty()) {
     for (int d = 0; d < 3; ++d) best[d] = static_cast<int>(spec.starts[d].size()) - 1;
-    return best[0] * best[1] * best[2] == ranks && fits(spec, best) ? best : shorter;
+    return best[0] * best[1] * best[2] == ranks && fits(spec, best) ? best : with_shorter_rows;
   }
-  double best_cost = 0, shorter_cost = 0;
+  double best_cost = 0, cost_with_shorter_rows = 0;
   for (int px = 1; px <= ranks; ++px) {
     if (ranks % px) continue;
     if (spec.processors[0] && px != spec.processors[0]) continue;
-    const bool least = best[0] == 0 || best[0] == px;
-    if (!least && spec.cells[0] < sum_block * px) break;
+    const bool is_least_split = best[0] == 0 || best[0] == px;
+    if (!is_least_split && spec.cells[0] < sum_block * px) break;
     for (int py = 1; py <= ranks / px; ++py) {
       if ((ranks / px) % py) continue;
       const Int3 trial{px, py, ranks / px / py};
       if (spec.processors[1] && py != spec.processors[1]) continue;
       if (spec.processors[2] && trial[2] != spec.processors[2]) continue;
       if (!fits(spec, trial)) continue;
-      // Of the largest box: ghost cells per layer, z before y because planes are contiguous, and a share of the cells
-      // that others do not have.
+      // The cost of the largest box: its ghost cells per layer, where a split of z is preferred because planes are
+      // contiguous, and the cells that it has more than the mean.
       const Int3 n = largest_box(spec, trial);
       const double size = double(n[0]) * n[1] * n[2],
                    mean = double(spec.cells[0]) * spec.cells[1] * spec.cells[2] / ranks;
       const double cost = double(n[0]) * ((py > 1) * n[2] * 1.001 + (trial[2] > 1) * n[1]) +
-                          double(px > 1) * n[1] * n[2] + share * (size - mean);
-      Int3 &chosen = least ? best : shorter;
-      double &chosen_cost = least ? best_cost : shorter_cost;
+                          double(px > 1) * n[1] * n[2] + cell_cost * (size - mean);
+      Int3 &chosen = is_least_split ? best : with_shorter_rows;
+      double &chosen_cost = is_least_split ? best_cost : cost_with_shorter_rows;
       if (chosen[0] != 0 && cost >= chosen_cost) continue;
       chosen = trial;
       chosen_cost = cost;
     }
   }
-  return shorter[0] != 0 && best_cost > worth * shorter_cost ? shorter : best;
+  return with_shorter_rows[0] != 0 && best_cost > min_cost_ratio * cost_with_shorter_rows ? with_shorter_rows : best;
 }
 
 Int3 Domain::largest_box(const GridSpec &spec, const Int3 &ranks) {
@@ -141,7 +143,7 @@ PetscErrorCode Domain::create_cell_dm(DMDAStencilType stencil, int width, DM *dm
   return create_dm(false, stencil, width, dm);
 }
 
-// With `high_faces` a direction with boundaries has a point more than cells.
+// With `high_faces` a direction with boundaries has one point more than cells.
 PetscErrorCode Domain::create_dm(bool high_faces, DMDAStencilType stencil, int width, DM *dm) const {
   PetscFunctionBeginUser;
   std::array<std::vector<PetscInt>, 3> counts;
@@ -169,7 +171,7 @@ PetscErrorCode Domain::create_dm(bool high_faces, DMDAStencilType stencil, int w
   PetscFunctionReturn(0);
 }
 
-// Reads from the DMDA what each rank owns, and the box of this one.
+// Reads the points of all ranks from the DMDA, and makes the box of this rank.
 PetscErrorCode Domain::read_dm() {
   const PetscInt *points[3];
   PetscInt begin[3], count[3];
@@ -178,7 +180,7 @@ PetscErrorCode Domain::read_dm() {
   PetscCall(DMDAGetCorners(dm_.get(), &begin[0], &begin[1], &begin[2], &count[0], &count[1], &count[2]));
   Int3 first, cells;
   for (int d = 0; d < 3; ++d) {
-    const int N = spec_.cells[d];  // the point N is no cell
+    const int N = spec_.cells[d];  // point N, on a high boundary, is not a cell
     for (int p = 0; p < processors(d); ++p)
       split_.starts[d][p + 1] = std::min(N, split_.starts[d][p] + (points[d] ? static_cast<int>(points[d][p]) : 1));
     first[d] = static_cast<int>(begin[d]);

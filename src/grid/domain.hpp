@@ -1,5 +1,5 @@
-// The domain of a run on all its ranks: the DMDA, the box of cells of this rank, and who owns all others. Routines that
-// compute take the Box; those that communicate take the Domain.
+// The domain of a run on all ranks: the DMDA, the box of cells of this rank, and the owners of all other cells.
+// Routines that compute take a Box, routines that communicate take a Domain.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -10,36 +10,37 @@
 
 namespace eulastic {
 
-/// The grid that the options ask for.
+/// Size, boundaries and decomposition of the grid as set by options.
 struct GridSpec : DomainShape {
   Int3 processors{0, 0, 0};  ///< ranks per direction; 0: chosen by the program
-  /// First cell of each rank along every direction, and N at the end; empty: an even split
+  /// First cell of each rank along every direction, followed by N; empty: an even split
   std::array<std::vector<int>, 3> starts;
-  int ghosts = 5;  ///< layers in memory: WENO5 reads three, the extrapolation of B outside bodies takes five
+  int ghosts = 5;  ///< ghost layers: WENO5 reads three, the extrapolation of B outside bodies reads five
 };
 
+/// The grid of a run, distributed over the ranks of a communicator.
 class Domain : public Box {
 public:
-  /// Splits the cells over `comm` and makes the DMDA. x is split only when y and z cannot take all ranks, where a whole
-  /// x means many more ghosts, or if `spec` says so. Call `why_not` first: it says in one line why a spec cannot be
-  /// split.
+  /// Splits the cells among the ranks of `comm` and creates the DMDA. x is split only if `spec` requires it, if y and z
+  /// cannot take all ranks, or if whole rows would cause many more ghosts. Fails if why_not() returns an error.
+  /// Collective.
   PetscErrorCode create(MPI_Comm comm, const GridSpec &spec);
-  /// What `create` would make on the first of `ranks` ranks, without a DMDA or a communicator: for estimates, at any
-  /// number of ranks and cells. `why_not` must be empty.
+  /// Returns the domain of the first of `ranks` ranks without DMDA and communicator, for estimates with any number of
+  /// ranks and cells. why_not() must return no error.
   static Domain planned(const GridSpec &spec, int ranks);
-  /// Empty if `spec` fits on `ranks` ranks, else one sentence with the numbers.
+  /// Returns an error message of one line if `spec` cannot be split among `ranks` ranks, otherwise an empty string.
   static std::string why_not(const GridSpec &spec, int ranks);
-  /// Ranks per direction that `create` would use; {0,0,0} when impossible.
+  /// Returns the ranks per direction that create() would use; {0,0,0} if there is no valid decomposition.
   static Int3 decompose(const GridSpec &spec, int ranks);
-  /// The largest number of cells of a rank along each direction.
+  /// Returns the largest number of cells of a rank along each direction.
   static Int3 largest_box(const GridSpec &spec, const Int3 &ranks);
 
-  /// The DMDA of all fields: one value per point. Its stencil is a box as wide as there are ghosts, or as the narrowest
-  /// rank has cells. A direction with boundaries has N + 1 points, so that the high face is a point like any other, and
-  /// DM_BOUNDARY_GHOSTED. Null for a planned() domain.
+  /// The DMDA of all fields, with one value per point. Its box stencil is as wide as the ghost layers, but not wider
+  /// than the narrowest rank. A direction with boundaries is DM_BOUNDARY_GHOSTED and has N + 1 points, so that the face
+  /// on the high boundary is a point like any other. Null for a planned() domain.
   DM dm() const { return dm_.get(); }
-  /// A DMDA with one value per cell, of the same split, for matrices: these have a column for each point of the
-  /// stencil.
+  /// Creates a DMDA with one value per cell and the same split for matrices, which have a column for every stencil
+  /// point.
   PetscErrorCode create_cell_dm(DMDAStencilType stencil, int width, DM *dm) const;
 
   MPI_Comm comm() const { return comm_; }
@@ -49,9 +50,9 @@ public:
   /// Ranks along direction d.
   int processors(int d) const { return split_.parts(d); }
 
-  /// The cells of all ranks, as the DMDA's ownership ranges say.
+  /// The cells of all ranks, from the ownership ranges of the DMDA.
   const Split &split() const { return split_; }
-  /// The rank that owns global cell (i,j,k).
+  /// Returns the rank that owns global cell (i,j,k).
   int owner(int i, int j, int k) const {
     return split_.rank_at({split_.position_along(0, i), split_.position_along(1, j), split_.position_along(2, k)});
   }

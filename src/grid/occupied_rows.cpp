@@ -15,7 +15,7 @@ bool skip_nothing = false;
 void set_skip_nothing(bool nothing) noexcept { skip_nothing = nothing; }
 bool skips_nothing() noexcept { return skip_nothing; }
 
-// By its bits, but for the sign, which vectors can do.
+// Tests bits without the sign bit, because the compiler vectorises integer operations.
 bool OccupiedRows::any(const double *row, int begin, int end) noexcept {
   std::uint64_t found = 0;
   for (int i = begin; i < end; ++i) {
@@ -30,7 +30,7 @@ namespace {
 
 using Span = OccupiedRows::Span;
 
-// From the first to the last piece of the row with a value that is not zero.
+// Returns the part of the row from the first to the last piece of 16 cells with a nonzero value.
 Span occupied(const double *row, Span within) {
   constexpr int piece = 16;
   while (within.begin < within.end && !OccupiedRows::any(row, within.begin, std::min(within.begin + piece, within.end)))
@@ -40,7 +40,7 @@ Span occupied(const double *row, Span within) {
   return within;
 }
 
-// Asks for what occupied() will read of a row: too little, too far apart, for processors to foresee.
+// Prefetches the ends of a row that occupied() reads. Hardware prefetchers do not detect these short, distant accesses.
 void prefetch_ends(const double *row, Span s) {
   constexpr int line = 8;
   for (int i = 0; i < 3 * line; i += line) {
@@ -49,11 +49,11 @@ void prefetch_ends(const double *row, Span s) {
   }
 }
 
-bool empty(const Span &s) { return s.begin >= s.end; }
+bool is_empty(const Span &s) { return s.begin >= s.end; }
 
 void add(const Span &more, Span *sum) {
-  if (empty(more)) return;
-  *sum = empty(*sum) ? more : Span{std::min(sum->begin, more.begin), std::max(sum->end, more.end)};
+  if (is_empty(more)) return;
+  *sum = is_empty(*sum) ? more : Span{std::min(sum->begin, more.begin), std::max(sum->end, more.end)};
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ PetscErrorCode OccupiedRows::find(const Domain &domain, ConstView value) {
 PetscErrorCode OccupiedRows::follow(const Domain &domain, const std::vector<Moved> &moved) {
   PetscFunctionBeginUser;
   if (moved.empty()) PetscFunctionReturn(0);
-  std::vector<int> all_inside;  // of each, on all ranks
+  std::vector<int> all_inside;  // one flag for each field
   for (const Moved &one : moved) {
     const OccupiedRows before = std::move(*one.rows);
     one.rows->read(domain, one.value, before, {domain.layout().ghosts[0] + beyond_ghosts, false});
@@ -92,24 +92,24 @@ void OccupiedRows::follow_in_box(const Box &box, ConstView value, int reach) {
 
 void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &before, const Reading &reading) {
   const Int3 &n = box.cells(), &ghosts = box.layout().ghosts;
-  const bool alone = reading.alone;
+  const bool complete = reading.complete;
   const int reach = reading.reach, reach_z = ghosts[2] > 0 ? reach : 0;
   constexpr int ahead = 8;  // rows
-  const bool split_x = !box.spans(0) && !alone;
+  const bool split_x = !box.spans(0) && !complete;
   const Span whole{-ghosts[0], n[0] + ghosts[0]};
   cells_of_box_ = n;
   unknown_ = whole;
-  low_y_ = alone ? -ghosts[1] : 0;
-  low_z_ = alone ? -ghosts[2] : 0;
+  low_y_ = complete ? -ghosts[1] : 0;
+  low_z_ = complete ? -ghosts[2] : 0;
   rows_y_ = n[1] - 2 * low_y_;
   rows_z_ = n[2] - 2 * low_z_;
   const std::size_t rows = rows_y_;
   spans_.assign(rows * rows_z_, {0, 0});
-  std::vector<Span> along_y(rows * (n[2] + 2 * ghosts[2]), {0, 0});  // what is within reach in x and y
+  std::vector<Span> along_y(rows * (n[2] + 2 * ghosts[2]), {0, 0});  // cells within reach in x and y, for every plane
   const auto read_plane = [&](int k) {
     for (int j = -ghosts[1]; j < n[1] + ghosts[1]; ++j) {
       const bool owned = j >= 0 && j < n[1] && k >= 0 && k < n[2];
-      if ((alone || before.inside_) && !owned) continue;  // nothing has come so far
+      if ((complete || before.inside_) && !owned) continue;  // the body cannot have reached ghosts
       const bool was_idle = before.idle(j, k);
       if (was_idle && !split_x) continue;
       const double *row = value.row(j, k);
@@ -117,11 +117,11 @@ void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &bef
       prefetch_ends(value.row(j + ahead, k), {std::max(next.begin, whole.begin), std::min(next.end, whole.end)});
       const Span old = before.span(j, k);
       Span found = was_idle ? old : occupied(row, {std::max(old.begin, 0), std::min(old.end, n[0])});
-      if (!alone) {
-        add(occupied(row, {whole.begin, 0}), &found);  // what comes from beyond
+      if (!complete) {
+        add(occupied(row, {whole.begin, 0}), &found);  // values that came from other ranks
         add(occupied(row, {n[0], whole.end}), &found);
       }
-      if (empty(found)) continue;
+      if (is_empty(found)) continue;
       found = {std::max(found.begin - reach, whole.begin), std::min(found.end + reach, whole.end)};
       for (int y = std::max(j - reach, low_y_); y < std::min(j + reach + 1, low_y_ + rows_y_); ++y)
         add(found, &along_y[y - low_y_ + rows * (k + ghosts[2])]);
@@ -137,16 +137,16 @@ void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &bef
       for (int y = 0; y < rows_y_; ++y) add(along_y[y + rows * (k + ghosts[2])], &spans_[y + rows * (z - low_z_)]);
   if (skips_nothing()) spans_.assign(spans_.size(), whole);
   inside_ = true;
-  const bool along_x = alone ? box.is_wall(0) : split_x;
-  // Of a box that is whole on this rank, only the ends at sides of the domain have anything beyond.
+  const bool along_x = complete ? box.is_wall(0) : split_x;
+  // A box that is complete on this rank has ghosts with data only behind boundaries of the domain.
   const auto inner = [&](int d, int begin, int end) {
-    const bool low = !alone || box.touches_low(d), high = !alone || box.touches_high(d);
+    const bool low = !complete || box.touches_low(d), high = !complete || box.touches_high(d);
     return !(low && begin < ghosts[d]) && !(high && end > n[d] - ghosts[d]);
   };
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j) {
       const Span s = span(j, k);
-      if (empty(s)) continue;
+      if (is_empty(s)) continue;
       inside_ = inside_ && (!along_x || inner(0, s.begin, s.end)) && inner(1, j, j + 1) && inner(2, k, k + 1);
     }
   count();
@@ -155,7 +155,7 @@ void OccupiedRows::read(const Box &box, ConstView value, const OccupiedRows &bef
 Segment OccupiedRows::within(const Segment &row, ConstView value) const noexcept {
   const Segment all = within(row);
   const Span found = occupied(value.row(row.j, row.k), {all.i_begin, all.i_end});
-  if (empty(found)) return {all.i_begin, all.i_begin, row.j, row.k};
+  if (is_empty(found)) return {all.i_begin, all.i_begin, row.j, row.k};
   return {found.begin, found.end, row.j, row.k};
 }
 

@@ -1,4 +1,4 @@
-// Where rows of a field hold anything but zeros: what there is to do elsewhere is known without reading it.
+// Finds for every row the span of cells outside of which a field is zero, so that routines can skip the rest unread.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,10 +11,11 @@ namespace eulastic {
 
 /// Whether work is skipped where a scene has nothing to compute, which must not change a bit of the result: tests
 /// switch it off and compare (tests/same_bits). With true every cell of every row is computed, and work space is filled
-/// with a wrong value each time it is leased. Must be set before there is a grid. The default is false.
+/// with a wrong value each time it is leased. Must be called before a grid is created. The default is false.
 void set_skip_nothing(bool nothing) noexcept;
 bool skips_nothing() noexcept;
 
+/// For every row of cells the span within which a field, such as phi, or the result of a stencil on it can be nonzero.
 class OccupiedRows {
 public:
   /// Cells of a row, ghosts included: begin <= i < end.
@@ -22,30 +23,30 @@ public:
     int begin, end;
   };
 
-  /// Cells that spans reach further than ghosts do, one for edges and one for what moves within a step.
+  /// Cells by which spans exceed the ghost width: one for edges and one for the motion within a step.
   static constexpr int beyond_ghosts = 2;
 
-  /// Reads all of `value`, ghosts included. Before that every row counts as occupied throughout. Collective.
+  /// Finds the spans from all of `value`, including ghosts. Previous spans are ignored. Collective.
   PetscErrorCode find(const Domain &domain, ConstView value);
-  /// The same of a field in a box that is whole on this rank, with nothing in its ghosts: spans are known there, too,
-  /// and reach `reach` cells beyond what is not zero. Not collective.
+  /// Finds the spans of a field in a box that is complete on this rank and whose ghosts are zero. The rows of ghosts
+  /// have spans, too, and spans extend `reach` cells beyond nonzero values. Not collective.
   void find_in_box(const Box &box, ConstView value, int reach);
-  /// Those of find_in_box() after a transport by less than a cell.
+  /// Updates the spans of find_in_box() after a transport by less than a cell.
   void follow_in_box(const Box &box, ConstView value, int reach);
   struct Moved {
     OccupiedRows *rows;
-    ConstView value;  ///< the field whose rows they are
+    ConstView value;  ///< the field of these rows
   };
-  /// Finds the rows of several fields again after a transport by less than a cell, in one reduction: what was outside
-  /// the spans is still empty and is not read; ghost rows are not read either if all was inside().
+  /// Updates the spans of several fields after a transport by less than a cell, with one reduction. Cells outside the
+  /// old spans are zero and are not read; ghost rows are read only if inside() is false. Collective.
   static PetscErrorCode follow(const Domain &domain, const std::vector<Moved> &moved);
 
-  /// Adds the spans of another field of the grid.
+  /// Extends the spans to contain those of another field on the same grid.
   void join(const OccupiedRows &other);
 
-  /// Outside it row (j, k) and all that stencils join to it are zero: as far as there are ghosts, one as edges belong
-  /// to the centres below them too, one for what moves within a step. On the grid all of a ghost row: what comes to it
-  /// from beyond is not known.
+  /// Returns the span of row (j, k), outside of which all values and all stencils that reach them are zero: it extends
+  /// beyond nonzero values by the ghost width and beyond_ghosts. On the grid the span of a ghost row is the whole row,
+  /// because values beyond the ghosts are unknown.
   Span span(int j, int k) const noexcept {
     const int y = j - low_y_, z = k - low_z_;
     const bool known = y >= 0 && z >= 0 && y < rows_y_ && z < rows_z_;
@@ -60,35 +61,36 @@ public:
     const Span s = span(j, k);
     return i >= s.begin && i < s.end;
   }
-  /// What is in spans of a piece of a row.
+  /// Returns the intersection of a segment with the span of its row.
   Segment within(const Segment &row) const noexcept {
     const Span s = span(row.j, row.k);
     return {std::max(row.i_begin, s.begin), std::max({row.i_begin, s.begin, std::min(row.i_end, s.end)}), row.j, row.k};
   }
-  /// The least of it, but for some cells, that has all that is not zero of `value`, which is zero outside the spans.
+  /// Returns the part of a segment that contains all nonzero cells of `value`, to within 16 cells. `value` must be zero
+  /// outside the spans.
   Segment within(const Segment &row, ConstView value) const noexcept;
-  /// Whether on no rank a span comes as near to the others, or to a side of the domain, as ghosts see: there is nothing
-  /// to exchange, nor behind sides. Of find_in_box(): to a side that is no periodic one.
+  /// Whether on no rank a span comes as close to another rank or to a boundary as the ghost width: then neither
+  /// exchanges nor boundary ghosts are needed. For find_in_box(): to a boundary that is not periodic.
   bool inside() const noexcept { return inside_; }
 
-  /// Whether one of these values is not zero.
+  /// Whether any of the values begin <= i < end is nonzero.
   static bool any(const double *row, int begin, int end) noexcept;
-  /// Owned cells in spans.
+  /// Number of owned cells in spans.
   std::ptrdiff_t cells() const noexcept { return cells_; }
 
 private:
   void count() noexcept;
   struct Reading {
     int reach;
-    bool alone;  ///< the box is whole on this rank
+    bool complete;  ///< the box is complete on this rank
   };
   void read(const Box &box, ConstView value, const OccupiedRows &before, const Reading &reading);
 
   static constexpr int far = 1 << 30;
   int low_y_ = 0, low_z_ = 0;    ///< first row of spans_
-  int rows_y_ = 0, rows_z_ = 0;  ///< those of spans_
+  int rows_y_ = 0, rows_z_ = 0;  ///< number of rows of spans_
   Int3 cells_of_box_{};
-  Span unknown_{-far, far};  ///< of other rows
+  Span unknown_{-far, far};  ///< span of all other rows
   std::vector<Span> spans_;
   bool inside_ = false;
   std::ptrdiff_t cells_ = 0;

@@ -1,4 +1,4 @@
-// A few rows of scratch that stay in the first-level cache; indexed like the rows of a field.
+// Scratch memory for a few rows, which stay in the first-level cache and have the same indices as rows of a field.
 #pragma once
 
 #include "grid/box.hpp"
@@ -8,16 +8,17 @@
 
 namespace eulastic {
 
-/// n rounded up to a multiple of what the widest vectors hold of bytes: what is left of a row after them, done one by
-/// one, would often be most of it.
+/// Returns a number of bytes rounded up to a multiple of 64, the widest vectors: the remainder of a vector loop runs
+/// element by element and would often dominate.
 constexpr int whole_vectors(int n) { return (n + 63) / 64 * 64; }
 
+/// Owns `rows` rows of scratch for a box.
 class RowScratch {
 public:
   RowScratch(const Box &box, int rows)
       : length_((box.cells()[0] + 3 * 8 + 7) / 8 * 8),
         data_(static_cast<double *>(std::aligned_alloc(64, sizeof(double) * length_ * rows)), std::free) {}
-  /// Row r; valid for -8 <= i < owned + 8.
+  /// Returns row r, valid for -8 <= i < cells + 8.
   double *row(int r) const noexcept { return data_.get() + r * length_ + 8; }
 
 private:

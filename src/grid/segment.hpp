@@ -1,17 +1,17 @@
-// A run of cells in x, and plain views of one field: all that a kernel ever sees of the grid. PETSc-free.
+// A run of cells in x, and views of one field: the only knowledge of the grid that kernels have. Free of PETSc.
 #pragma once
 
 #include <cstddef>
 
 namespace eulastic {
 
-/// Cells i_begin <= i < i_end of the row (j, k); local indices, 0 is the first owned cell.
+/// Cells i_begin <= i < i_end of row (j, k) in local indices; 0 is the first owned cell.
 struct Segment {
   int i_begin, i_end, j, k;
   int size() const noexcept { return i_end - i_begin; }
 };
 
-/// One ghosted field. `origin` is the value of local cell (0,0,0); the stride in x is 1.
+/// A non-owning view of one ghosted field. `origin` points to local cell (0,0,0); the stride in x is 1.
 template <class T>
 struct BasicView {
   T *origin = nullptr;
@@ -23,8 +23,8 @@ struct BasicView {
   operator BasicView<const T>() const noexcept { return {origin, sy, sz}; }
 };
 
-/// 1/h^2 of the three directions. Kernels take a copy: what a pointer leads to could be what they write, and would be
-/// read again for every cell.
+/// 1/h^2 of the three directions. Kernels take it by value: values behind a pointer might alias the output and would be
+/// reloaded for every cell.
 struct InverseSquares {
   double x, y, z;
 };

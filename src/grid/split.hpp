@@ -1,4 +1,4 @@
-// Which cells each rank has: all directions are cut, and ranks count through the boxes along x first.
+// The cells of each rank: a tensor product of splits of the directions. Ranks are numbered along x first.
 #pragma once
 
 #include "grid/box.hpp"
@@ -7,22 +7,23 @@
 
 namespace eulastic {
 
-/// The cells that cuts of a direction are multiples of: a power of two that divides `cells`, so that coarse grids have
-/// whole cells on every rank, as large as an unevenness of an eighth allows.
+/// Returns the largest power of two that divides `cells` and at which cuts cause an imbalance of at most one eighth.
+/// With cuts at its multiples, coarse grids have whole cells on every rank.
 inline int cut_unit(int cells, int parts) {
   int unit = 1;
   while (cells % (2 * unit) == 0 && cells / parts >= 8 * 2 * unit) unit *= 2;
   return unit;
 }
 
+/// The decomposition of the cells of the domain.
 struct Split {
-  std::array<std::vector<int>, 3> starts;  ///< [direction][position]: first cell; N at the end
+  std::array<std::vector<int>, 3> starts;  ///< [direction][position]: first cell; the number of cells at the end
 
-  /// Ranks along direction d.
+  /// Number of ranks along direction d.
   int parts(int d) const { return static_cast<int>(starts[d].size()) - 1; }
-  /// Cells along d of the ranks at a position.
+  /// Number of cells along d of the ranks at a position.
   int cells_along(int d, int position) const { return starts[d][position + 1] - starts[d][position]; }
-  /// The position along d of the ranks that own index i; index N belongs to the owner of N - 1.
+  /// Position along d of the ranks that own index i. Index N belongs to the owner of N - 1.
   int position_along(int d, int i) const {
     const int cell = std::min(i, starts[d].back() - 1);
     return static_cast<int>(std::upper_bound(starts[d].begin(), starts[d].end(), cell) - starts[d].begin()) - 1;
@@ -30,7 +31,7 @@ struct Split {
 
   Int3 position_of(int rank) const { return {rank % parts(0), rank / parts(0) % parts(1), rank / parts(0) / parts(1)}; }
   int rank_at(const Int3 &position) const { return position[0] + parts(0) * (position[1] + parts(1) * position[2]); }
-  /// The cells of a rank, as a block of `domain`.
+  /// The block of cells of a rank, as a part of `domain`.
   Box box_of(int rank, const DomainShape &domain, int ghosts) const {
     const Int3 at = position_of(rank);
     return {domain,

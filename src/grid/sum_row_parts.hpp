@@ -1,4 +1,4 @@
-// Exact sums over all ranks of what a verb finds in the owned rows.
+// Exact sums over the owned rows of all ranks.
 #pragma once
 
 #include "base/exact_sum.hpp"
@@ -9,7 +9,8 @@
 
 namespace eulastic {
 
-/// `count` exact sums over all ranks, of what add(part, sums) adds in every part of the owned rows. Collective.
+/// Computes `count` exact sums over all ranks: add(part, sums) adds the contribution of every part of the owned rows.
+/// Writes `count` doubles to `result`. Collective.
 template <class Add>
 PetscErrorCode sum_row_parts(const Domain &domain, int count, const Add &add, double *result) {
   PetscFunctionBeginUser;

@@ -3,7 +3,7 @@
 namespace eulastic {
 
 int row_parts(const Box &box) {
-  constexpr double least = 512;  // cells: in parallel, fewer gain nothing
+  constexpr double least = 512;  // cells per part: smaller parts gain nothing from parallel processing
   if (TeamMember::is_here()) return 1;
   const int slices = box.cells()[box.dimension() - 1];
   return std::max(1, static_cast<int>(std::min({double(threads()), double(slices), box.cell_count() / least})));

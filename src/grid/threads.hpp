@@ -1,4 +1,4 @@
-// How the threads of a rank share the rows of a routine.
+// Distribution of the rows of a routine over the threads of a rank.
 #pragma once
 
 #include "base/team.hpp"
@@ -10,13 +10,13 @@
 
 namespace eulastic {
 
-/// Sets the number of threads per rank, at least 1. Fields that are made afterwards have their pages near the thread
-/// that works on them.
+/// Sets the number of threads per rank, at least 1. Pages of fields that are created afterwards are placed near the
+/// thread that works on them.
 inline void set_threads(int count) { ThreadTeam::of_rank().resize(count); }
 inline int threads() noexcept { return ThreadTeam::of_rank().size(); }
 
-/// work(n) for every 0 <= n < count: thread t of `team`, at most all of the rank, does t, t + team ..., so that it
-/// comes back to the same planes. Within a parallel region the calling thread does all of them.
+/// Calls work(n) for every 0 <= n < count. Thread t of `team` threads (at most those of the rank) takes n = t, t + team
+/// ..., so that it always works on the same planes. Within a parallel region the calling thread does all the work.
 template <class Work>
 void in_parallel(int team, int count, const Work &work) {
   team = std::min(team, count);
@@ -29,8 +29,8 @@ void in_parallel(int team, int count, const Work &work) {
   });
 }
 
-/// work(n) for every 0 <= n < count, each of them whole on one thread; whoever is free takes the next one. Returns the
-/// flops of the routines in them.
+/// Calls work(n) for every 0 <= n < count, each on a single thread; a free thread takes the next n. Returns the flops
+/// of the routines that were called.
 template <class Work>
 double in_team(int count, const Work &work) {
   std::vector<double> flops(threads(), 0.0);
@@ -42,33 +42,34 @@ double in_team(int count, const Work &work) {
   return std::accumulate(flops.begin(), flops.end(), 0.0);
 }
 
-/// Piece `part` of `parts` of 0 ... count.
+/// Indices begin <= n < end of piece `part` of `parts` of [0, count).
 struct Piece {
   std::size_t begin, end;
   Piece(std::size_t count, int part, int parts) : begin(count * part / parts), end(count * (part + 1) / parts) {}
 };
 
-/// Part of the owned rows: planes, in 2-D rows.
+/// A part of the owned rows: some of the planes, in 2-D some of the rows.
 struct RowPart {
   int number, j_begin, j_end, k_begin, k_end;
-  bool first, last;                                 ///< whether it begins and ends where the rank does
-  std::vector<Segment> rows(const Box &box) const;  ///< whole
-  /// With the layer of ghosts around the owned rows.
+  bool first, last;                                 ///< whether the part begins and ends where the block does
+  std::vector<Segment> rows(const Box &box) const;  ///< all rows of the part, without ghosts
+  /// Returns the part extended by the first layer of ghosts around the owned rows.
   RowPart with_ghosts(const Box &box) const;
 };
 
-/// Into how many: as many as there are threads, but none of less than some hundred cells; one for a member of a team.
+/// Returns the number of parts: that of the threads, or fewer so that parts have at least 512 cells; one for a member
+/// of a team.
 int row_parts(const Box &box);
 RowPart row_part(const Box &box, int part, int parts);
 
-/// work(part) for all parts of the owned rows.
+/// Calls work(part) for all parts of the owned rows, in parallel.
 template <class Work>
 void in_row_parts(const Box &box, const Work &work) {
   const int parts = row_parts(box);
   in_parallel(parts, parts, [&](int part) { work(row_part(box, part, parts)); });
 }
 
-/// work(begin, end) for all parts of `segments`, pointers.
+/// Calls work(begin, end) for all parts of `segments`, in parallel; begin and end are pointers.
 template <class Work>
 void in_parts_of(const std::vector<Segment> &segments, const Box &box, const Work &work) {
   const int parts = row_parts(box);

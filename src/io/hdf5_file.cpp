@@ -493,7 +493,7 @@ PetscErrorCode Hdf5File::read_own_records(const std::string &name, std::size_t n
   PetscCall(records_of(values->size() / numbers, numbers, &slab));
   PetscCall(open_dataset(name, &dataset));
   PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>(slab.total, slab.total + 3),
-                  name + " is of another scene"));
+                  name + " belongs to another case"));
   PetscCall(read_values(name, dataset.get(), slab, values));
   PetscFunctionReturn(0);
 }
@@ -503,7 +503,7 @@ PetscErrorCode Hdf5File::read_share(const std::string &name, hsize_t total, hsiz
   Hdf5Dataset dataset;
   PetscFunctionBeginUser;
   PetscCall(open_dataset(name, &dataset));
-  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{total}, name + " is of another scene"));
+  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{total}, name + " belongs to another case"));
   PetscCall(read_values(name, dataset.get(), {1, {total, 1, 1}, {begin, 0, 0}, {values->size(), 1, 1}}, values));
   PetscFunctionReturn(0);
 }

@@ -133,7 +133,7 @@ std::string read_profile_file(const std::string &path, const std::string &datase
   const auto found = std::find(accepted.begin(), accepted.end(), shape);
   if (found == accepted.end())
     return said + " has the shape " + listed(shape) + "; accepted: " + listed(accepted[0]) + " or " +
-           listed(accepted[1]) + ", the cells of the side, slowest first";
+           listed(accepted[1]) + ", the cells of the boundary, slowest first";
   const std::size_t cells = std::size_t(slow) * std::size_t(fast);
   const bool vector = (found - accepted.begin()) % 2 == 1;
   std::vector<double> all(vector ? 3 * cells : cells);

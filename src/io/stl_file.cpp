@@ -71,11 +71,12 @@ std::string read_binary(std::ifstream &stream, std::uintmax_t size, std::vector<
     const Solid solid = solid_at(stream, begin, size);
     if (begin > 0 && solid.count == 0) break;
     if (!solid.fits && begin > 0)
-      return "what follows its " + std::to_string(triangles->size()) + " triangles is no other solid, it is damaged";
+      return "what follows its " + std::to_string(triangles->size()) +
+             " triangles is not another solid; the file is damaged";
     if (!solid.fits)
       return begin + header_bytes > size
                  ? "is too short for an STL file"
-                 : "its size does not fit to " + std::to_string(solid.count) + " triangles, it is truncated or damaged";
+                 : "its size does not match " + std::to_string(solid.count) + " triangles, it is truncated or damaged";
     if (std::string wrong = read_triangles(stream, solid.count, triangles); !wrong.empty()) return wrong;
     begin += header_bytes + triangle_bytes * std::uintmax_t{solid.count};
   }

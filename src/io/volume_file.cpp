@@ -39,7 +39,7 @@ std::string find_volume(const std::string &path, VolumeFormat *format, std::stri
   else if (is_stl(*file) || suffix == ".stl")  // the reader says what is wrong with a damaged one
     *format = VolumeFormat::stl;
   else
-    return *file + " is no HDF5, NRRD or STL file, or its beginning is damaged";
+    return *file + " is not an HDF5, NRRD or STL file, or its beginning is damaged";
   if (!dataset->empty() && *format != VolumeFormat::hdf5)
     return *file + " has no datasets; accepted: FILE:DATASET for HDF5 only";
   return {};

@@ -1,33 +1,36 @@
-// Bending of a membrane at one point, from a smoothed solid fraction around it: the curvatures of its surface, and how
-// much of their gradient runs along it; docs/method.md, section 18. Mirrored neighbours give the same bits.
+// Bending of a membrane at one point, from a smoothed solid fraction psi around it: the curvatures of the surface and
+// the tangential gradient of the curvature (docs/method.md, section 18). Mirrored neighbours give the same bits.
 #pragma once
 
 #include "kernels/stencils.hpp"
 
 namespace eulastic::kernels {
 
-/// Nearly linear in the distance, positive outside: the quantile of the normal distribution of 1/2 - psi within .0007,
-/// for .00003 < psi < .99997. Curvatures are those of any function of psi; of this one differences are best.
+/// Returns the quantile of the normal distribution of 1/2 - psi, within .0007 for .00003 < psi < .99997. It is nearly
+/// linear in the distance from the surface and positive outside, so that its differences are accurate; the curvature of
+/// a level surface is the same for any function of psi.
 EULASTIC_INLINE double surface_level(double psi) noexcept {
   constexpr double most = 0.49997;
-  const double away = 0.5 - psi, q = away > most ? most : away < -most ? -most : away, r = q * q;
-  constexpr double up[5] = {2.5083781391835727, -32.714879959659854, 153.95373578467806, -303.4151611935878,
-                            202.00843306993525},
-                   down[4] = {-14.049705712795657, 72.99713102775232, -165.58470644867114, 137.565900413665};
-  const double above = fma(r, fma(r, fma(r, fma(r, up[4], up[3]), up[2]), up[1]), up[0]);
-  const double below = fma(r, fma(r, fma(r, fma(r, down[3], down[2]), down[1]), down[0]), 1);
-  return q * above / below;
+  const double offset = 0.5 - psi, q = offset > most ? most : offset < -most ? -most : offset, r = q * q;
+  constexpr double top[5] = {2.5083781391835727, -32.714879959659854, 153.95373578467806, -303.4151611935878,
+                             202.00843306993525},
+                   bottom[4] = {-14.049705712795657, 72.99713102775232, -165.58470644867114, 137.565900413665};
+  const double numerator = fma(r, fma(r, fma(r, fma(r, top[4], top[3]), top[2]), top[1]), top[0]);
+  const double denominator = fma(r, fma(r, fma(r, fma(r, bottom[3], bottom[2]), bottom[1]), bottom[0]), 1);
+  return q * numerator / denominator;
 }
 
+/// Curvatures of a surface at one point.
 struct Curvatures {
-  double sum = 0, product = 0;  ///< of the principal ones, positive for a ball; in 2-D the second one is 0
+  double sum = 0, product = 0;  ///< of the principal curvatures, positive for a ball; 2-D: the second one is 0
 };
 
-/// Of the surface next to q, a surface level; `steepest`: the largest curvature that is believed.
+/// Returns the curvatures of the level surface 0 of q, which lies near this point. `steepest` is the largest curvature
+/// that is not limited.
 template <int Dim>
 EULASTIC_INLINE Curvatures surface_curvatures(const double *q, const std::ptrdiff_t *stride, const double *inverse,
                                               double steepest) noexcept {
-  double g[3] = {}, second[3] = {}, mixed[3] = {};  // mixed[c] of the other two directions
+  double g[3] = {}, second[3] = {}, mixed[3] = {};  // mixed[c]: derivative in the other two directions
   for (int d = 0; d < Dim; ++d) {
     const double up = q[stride[d]], down = q[-stride[d]];
     g[d] = 0.5 * inverse[d] * (up - down);
@@ -43,8 +46,8 @@ EULASTIC_INLINE Curvatures surface_curvatures(const double *q, const std::ptrdif
   if (!(square > 0)) return {};
   const double size = __builtin_sqrt(square), distance = *q / size;
   const double across = (second[0] * (yy + zz) + second[1] * (xx + zz)) + second[2] * (xx + yy);
-  const double turned = (mixed[2] * (g[0] * g[1]) + mixed[1] * (g[0] * g[2])) + mixed[0] * (g[1] * g[2]);
-  const double sum = (across - 2 * turned) / (square * size);
+  const double cross_terms = (mixed[2] * (g[0] * g[1]) + mixed[1] * (g[0] * g[2])) + mixed[0] * (g[1] * g[2]);
+  const double sum = (across - 2 * cross_terms) / (square * size);
   double product = 0;
   if constexpr (Dim == 3) {
     const auto plane = [&](int a, int b, int c) { return second[b] * second[c] - mixed[a] * mixed[a]; };
@@ -52,20 +55,20 @@ EULASTIC_INLINE Curvatures surface_curvatures(const double *q, const std::ptrdif
     const double straight = (xx * plane(0, 1, 2) + yy * plane(1, 2, 0)) + zz * plane(2, 0, 1);
     product = (straight + 2 * ((pair(0, 1, 2) + pair(0, 2, 1)) + pair(1, 2, 0))) / (square * square);
   }
-  // Of parallel surfaces: curvatures k become k/(1 - k d).
+  // The curvatures of parallel surfaces: k becomes k/(1 - k d) at the distance d.
   constexpr double least = 0.3;
   const double ratio = (1 - sum * distance) + product * (distance * distance);
   const double scale = 1 / (ratio > least ? ratio : least), most = (Dim - 1) * steepest;
   const double at_surface = scale * (sum - 2 * product * distance);
-  Curvatures found;
-  found.sum = at_surface > most ? most : at_surface < -most ? -most : at_surface;
-  const double equal = 0.25 * found.sum * found.sum, lowest = -steepest * steepest, k = scale * product;
-  if constexpr (Dim == 3) found.product = k > equal ? equal : k < lowest ? lowest : k;
-  return found;
+  Curvatures limited;
+  limited.sum = at_surface > most ? most : at_surface < -most ? -most : at_surface;
+  const double equal = 0.25 * limited.sum * limited.sum, lowest = -steepest * steepest, k = scale * product;
+  if constexpr (Dim == 3) limited.product = k > equal ? equal : k < lowest ? lowest : k;
+  return limited;
 }
 
-/// delta (1 - n n) grad of a curvature at the face between q and the cell before it along `a`, its component across; 0
-/// where one of the cells around has no delta. All three fields have the same strides.
+/// Returns the component along `a` of delta (1 - n n) grad(curvature) on the face between q and the cell before it
+/// along `a`; 0 where a cell of the stencil has no delta. All three fields have the same strides.
 template <int Dim>
 EULASTIC_INLINE double curvature_flux(const double *level, const double *curvature, const double *delta, int a,
                                       const std::ptrdiff_t *stride, const double *inverse) noexcept {
@@ -101,7 +104,7 @@ EULASTIC_INLINE double curvature_flux(const double *level, const double *curvatu
   return known && square > 0 ? 0.5 * (delta[0] + delta[-s]) * (slope[0] - n[0] * along / square) : 0;
 }
 
-/// Of E_b/2 (kappa - c0)^2 per area: minus its derivative without what depends on the slope of the curvature, over E_b.
+/// Returns the terms of (27), over E_b, that do not contain derivatives of the curvature.
 EULASTIC_INLINE double bending_pressure(const Curvatures &k, double spontaneous) noexcept {
   return (k.sum - spontaneous) * (0.5 * k.sum * (k.sum + spontaneous) - 2 * k.product);
 }

@@ -6,25 +6,27 @@
 
 namespace eulastic::kernels {
 
+/// Parameters and rates of a bond.
 struct BondLaw {
   double stiffness = 0;              ///< k, force per length
-  double length = 0;                 ///< l_0 at rest
+  double length = 0;                 ///< l_0, length without tension
   double reach = 0;                  ///< receptors up to this distance may bind
-  double rate_on = 0, rate_off = 0;  ///< of a bond without tension, per time
-  double reactive_compliance = 0;    ///< x_b/kT of slip: the rate of rupture grows as exp(F x_b/kT)
-  double catch_rate_off = 0;         ///< second path of rupture, whose rate falls as exp(-F catch_compliance)
-  double catch_compliance = 0;       ///< 1/force
-  double thermal_energy = 0;         ///< kT; 0: the rate of formation does not depend on the distance
+  double rate_on = 0, rate_off = 0;  ///< rates of formation and rupture of a bond without tension, per time
+  double reactive_compliance = 0;    ///< x_b/kT of a slip bond: the rate of rupture grows as exp(F x_b/kT)
+  double catch_rate_off = 0;    ///< catch bond: rate of a second path of rupture, falls as exp(-F catch_compliance)
+  double catch_compliance = 0;  ///< 1/force
+  double thermal_energy = 0;    ///< kT; 0: the rate of formation does not depend on the distance
 
-  /// Tension at a length; negative if the bond is pressed.
+  /// Returns the tension at a length; negative if the bond is compressed.
   double tension(double at) const noexcept { return stiffness * (at - length); }
   double energy(double at) const noexcept { return 0.5 * stiffness * (at - length) * (at - length); }
-  /// Rate of rupture at a tension; pressing does not change it.
+  /// Returns the rate of rupture at a tension. Compression does not change it.
   double off_rate(double tension) const noexcept {
     const double F = tension > 0 ? tension : 0;
     return rate_off * std::exp(F * reactive_compliance) + catch_rate_off * std::exp(-F * catch_compliance);
   }
-  /// Rate of formation of a bond of this length. With kT on/off is (on/off)(l_0) exp(-energy/kT): detailed balance.
+  /// Returns the rate of formation of a bond of this length. With kT > 0, on/off = (on/off)(l_0) exp(-energy/kT), which
+  /// is detailed balance.
   double on_rate(double at) const noexcept {
     if (at > reach) return 0;
     if (!(thermal_energy > 0)) return rate_on;
@@ -32,7 +34,7 @@ struct BondLaw {
   }
 };
 
-/// Probability that an event of a constant rate happens within dt.
+/// Returns the probability that an event of a constant rate happens within dt.
 inline double probability(double rate, double dt) noexcept { return -std::expm1(-rate * dt); }
 
 }  // namespace eulastic::kernels

@@ -1,7 +1,7 @@
-// Elastic force at the faces of one velocity component and stress power at a centre, of any law.
+// Elastic force on the faces of one velocity component, and stress power at a centre, for any law.
 //
-// Products with off-diagonal components are formed on their edges and then averaged: summed up, phi times the stress
-// power is minus the power of the discrete elastic force, whatever phi is (docs/method.md).
+// Products with off-diagonal components are formed on the edges and then averaged. Then the sum of phi times the stress
+// power equals minus the power of the discrete elastic force for any phi (docs/method.md, section 2).
 #pragma once
 
 #include "kernels/mooney_rivlin.hpp"
@@ -10,7 +10,8 @@
 
 namespace eulastic::kernels {
 
-/// add(offset, div(sigma)_a) for all points; b, c: the other directions. `viscosity`: SameViscosity or OwnViscosity.
+/// Calls add(offset, div(sigma)_a) for all points; b and c are the other directions. `viscosity` is SameViscosity or
+/// OwnViscosity.
 template <int Dim, class Law, class Viscosity, class Points, class Add>
 EULASTIC_INLINE void elastic_force(const Points &points, ConstView phi, const double *const *B,
                                    const std::ptrdiff_t *stride, const double *inverse_spacing, int a, const Law &law,
@@ -31,8 +32,8 @@ EULASTIC_INLINE void elastic_force(const Points &points, ConstView phi, const do
   });
 }
 
-/// sigma : grad v per phi, sigma without its pressure, at the centre at offset i; `v` points to the velocities on the
-/// low faces.
+/// Returns sigma : grad v over phi, with sigma without pressure, at the centre at offset i. `v` points to the
+/// velocities on the low faces.
 template <int Dim, class Law, class Viscosity>
 EULASTIC_INLINE double stress_power(const double *phi, const double *const *B, const double *const *v, std::ptrdiff_t i,
                                     const std::ptrdiff_t *stride, const double *inverse_spacing, const Law &law,

@@ -1,7 +1,7 @@
-// A branch-free exp for field loops: no libm, explicit fma, the same bits on AVX2 and AVX-512.
+// A branch-free exponential for simd loops, without libm and with explicit fma: the same bits with AVX2 and AVX-512.
 //
-// x = k ln 2 + r, |r| <= ln 2 / 2, Taylor polynomial of degree 13 in r, scaled by 2^k through the exponent bits.
-// Integers become doubles and back by adding 2^52 constants: AVX2 has no 64-bit conversion.
+// x = k ln 2 + r with |r| <= ln 2 / 2; a Taylor polynomial of degree 13 in r is scaled by 2^k through the exponent
+// bits. Integers are converted to doubles and back by adding multiples of 2^52, because AVX2 has no 64-bit conversion.
 #pragma once
 
 #include "kernels/isa.hpp"
@@ -10,9 +10,9 @@
 
 namespace eulastic::kernels {
 
-/// e^x for |x| <= 700, to one unit in the last place.
+/// Returns e^x for |x| <= 700, to one unit in the last place.
 EULASTIC_INLINE double exp(double x) noexcept {
-  constexpr double shifter = 0x1.8p52;  // its last bits hold the nearest integer
+  constexpr double shifter = 0x1.8p52;  // the last bits of a sum with it hold the nearest integer
   const double shifted = fma(x, 1.4426950408889634, shifter);
   const double k = shifted - shifter;
   const double r = fma(k, -1.90821492927058770002e-10, fma(k, -6.93147180369123816490e-01, x));

@@ -1,7 +1,8 @@
-// Curvature of an interface from heights: the solid in columns of cells across it, 3 of them in 2-D and 3 x 3 in 3-D.
+// Curvature of an interface from heights: the volumes of solid in columns of cells across it, 3 in 2-D and 3 x 3 in
+// 3-D.
 //
-// Popinet, J. Comput. Phys. 228 (2009), with columns that end where they are empty or full; docs/method.md,
-// section 17. Of second order.
+// Popinet, J. Comput. Phys. 228 (2009), with columns of fixed length that are made monotonic; docs/method.md,
+// section 17. Second order.
 #pragma once
 
 #include "kernels/interface_normal.hpp"
@@ -11,26 +12,26 @@
 
 namespace eulastic::kernels {
 
-/// Cells of a column before and behind the one whose curvature is wanted: enough for any inclination.
+/// Number of cells of a column on either side of the central one, enough for any inclination.
 inline constexpr int height_reach = 4;
 inline constexpr double height_curvature_flops_2d = 3 * 24 + 12, height_curvature_flops_3d = 9 * 24 + 40;
 
-/// Where columns stand and what their neighbours are. `along` points, with its sign, to where phi grows.
+/// Position of the columns around a cell. `along` points, with its sign, to increasing phi.
 struct ColumnFrame {
   std::ptrdiff_t along, b, c;   ///< strides
-  double height;                ///< spacing along
+  double height;                ///< spacing along the columns
   double inverse_b, inverse_c;  ///< of the spacings across; 2-D ignores c
 };
 
-/// Solid in a column, in cells, beyond its lowest cell. Away from the middle phi may only grow on one side and fall on
-/// the other: what belongs to another surface is not seen.
+/// Volume of solid in a column of nine cells, in cells. From the middle, phi is made non-decreasing on one side and
+/// non-increasing on the other, so that another surface has no effect.
 struct Column {
   double solid;
-  bool whole;  ///< its ends are full and empty
+  bool whole;  ///< whether its ends are full and empty, so that it contains the whole interface
 };
 
 EULASTIC_INLINE Column column_at(const double *q, std::ptrdiff_t along) noexcept {
-  constexpr double nearly = 1e-4;  // what planes leave behind
+  constexpr double tolerance = 1e-4;  // deviation from full and empty cells that the planes leave
   double up = q[0], down = q[0], sum = q[0];
 #pragma GCC unroll 4
   for (int n = 1; n <= height_reach; ++n) {
@@ -38,24 +39,24 @@ EULASTIC_INLINE Column column_at(const double *q, std::ptrdiff_t along) noexcept
     down = smaller(down, q[-n * along]);
     sum += up + down;
   }
-  return {sum, up >= 1 - nearly && down <= nearly};
+  return {sum, up >= 1 - tolerance && down <= tolerance};
 }
 
 struct HeightCurvature {
-  double value;  ///< 1/length, positive where the solid is convex; the sum of the principal curvatures
-  bool whole;    ///< whether all columns hold the interface
+  double value;  ///< in 1/length, positive where the solid is convex; the sum of the principal curvatures
+  bool whole;    ///< whether all columns contain the interface
 };
 
-/// At q. Mirrored neighbours give the same value to the bit.
+/// Returns the curvature at q. Mirrored neighbours give the same bits.
 template <int Dim>
 EULASTIC_INLINE HeightCurvature height_curvature(const double *q, const ColumnFrame &f) noexcept {
   const Column middle = column_at(q, f.along), lower = column_at(q - f.b, f.along), upper = column_at(q + f.b, f.along);
   const double slope_b = 0.5 * f.height * f.inverse_b * (upper.solid - lower.solid);
-  const double bend_b = f.height * f.inverse_b * f.inverse_b * ((upper.solid + lower.solid) - 2 * middle.solid);
+  const double second_b = f.height * f.inverse_b * f.inverse_b * ((upper.solid + lower.solid) - 2 * middle.solid);
   bool whole = middle.whole && lower.whole && upper.whole;
   if constexpr (Dim == 2) {
     const double square = fma(slope_b, slope_b, 1);
-    return {-bend_b / (square * __builtin_sqrt(square)), whole};
+    return {-second_b / (square * __builtin_sqrt(square)), whole};
   }
   const Column front = column_at(q - f.c, f.along), back = column_at(q + f.c, f.along);
   const Column low_front = column_at(q - f.b - f.c, f.along), low_back = column_at(q - f.b + f.c, f.along);
@@ -63,16 +64,16 @@ EULASTIC_INLINE HeightCurvature height_curvature(const double *q, const ColumnFr
   whole =
       whole && front.whole && back.whole && low_front.whole && low_back.whole && high_front.whole && high_back.whole;
   const double slope_c = 0.5 * f.height * f.inverse_c * (back.solid - front.solid);
-  const double bend_c = f.height * f.inverse_c * f.inverse_c * ((back.solid + front.solid) - 2 * middle.solid);
-  const double twist = 0.25 * f.height * f.inverse_b * f.inverse_c *
+  const double second_c = f.height * f.inverse_c * f.inverse_c * ((back.solid + front.solid) - 2 * middle.solid);
+  const double mixed = 0.25 * f.height * f.inverse_b * f.inverse_c *
                        ((high_back.solid + low_front.solid) - (high_front.solid + low_back.solid));
   const double bb = slope_b * slope_b, cc = slope_c * slope_c, square = 1 + (bb + cc);
-  const double sum = (bend_b * (1 + cc) + bend_c * (1 + bb)) - 2 * (twist * (slope_b * slope_c));
+  const double sum = (second_b * (1 + cc) + second_c * (1 + bb)) - 2 * (mixed * (slope_b * slope_c));
   return {-sum / (square * __builtin_sqrt(square)), whole};
 }
 
-/// The frame in which the interface at q is least inclined; `stride`, `spacing` in the order of the directions. False
-/// without a normal.
+/// Sets *frame so that the columns at q are as close to the normal as possible. `stride` and `spacing` are in the order
+/// of the directions. Returns false if phi has no gradient.
 template <int Dim>
 EULASTIC_INLINE bool column_frame(const double *q, const std::ptrdiff_t *stride, const double *spacing,
                                   ColumnFrame *frame) noexcept {

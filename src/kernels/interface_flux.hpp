@@ -1,4 +1,5 @@
-// One direction of the transport of a solid fraction by planes: fluxes through faces, and what they leave of phi.
+// One directional split of the transport of a solid fraction: fluxes through faces and the update of phi
+// (docs/method.md, section 6).
 #pragma once
 
 #include "grid/segment.hpp"
@@ -7,24 +8,24 @@
 
 namespace eulastic::kernels {
 
-inline constexpr double round_off = 1e-13;  ///< what may be left of 0 and 1 when it should be nothing
+inline constexpr double round_off = 1e-13;  ///< phi within this distance of 0 or 1 is set to 0 or 1
 inline constexpr double uniform_flux_flops = 2, apply_flux_flops = 8;
 inline constexpr double mixed_flux_flops_2d =
     interface_normal_flops_2d + plane_constant_flops_2d + 2 * plane_flux_flops_2d;
 inline constexpr double mixed_flux_flops_3d =
     interface_normal_flops_3d + plane_constant_flops_3d + 2 * plane_flux_flops_3d;
 
-/// A list of mixed cells, 0 < phi < 1, that are worked on in loops as long as the list: in a row of the interface band
-/// there are two or three.
+/// A list of mixed cells, 0 < phi < 1. A row of the interface band has only two or three of them, so that they are
+/// collected for long loops.
 struct MixedCells {
   static constexpr int capacity = 256;
-  std::ptrdiff_t at[capacity];         ///< offset from the origin of phi and of every field like it
-  bool low[capacity], high[capacity];  ///< whether the flux through that face is wanted
+  std::ptrdiff_t at[capacity];         ///< offset from the origin of phi and of every field with the same layout
+  bool low[capacity], high[capacity];  ///< whether the flux through the low and the high face is needed
   int count = 0;
 };
 
-/// Signed volume through the low faces of segment s, in cells, where the upwind cell is full, empty, or has no normal;
-/// `rate` = dt/h. phi is read at the face and `step` below it.
+/// Writes the signed volume through the low faces of segment s, in cells, for upwind cells that are full, empty or
+/// without a normal. `rate` = dt/h. Reads phi at the cell of the face and `step` below it.
 EULASTIC_INLINE void uniform_flux(const Segment &s, ConstView phi, ConstView velocity, std::ptrdiff_t step, double rate,
                                   double *flux) noexcept {
   const double *q = phi.row(s.j, s.k), *u = velocity.row(s.j, s.k);
@@ -35,8 +36,8 @@ EULASTIC_INLINE void uniform_flux(const Segment &s, ConstView phi, ConstView vel
   }
 }
 
-/// What leaves the mixed cells through their faces in the first of the directions `stride`. phi is read in all
-/// neighbours, the velocity at both faces.
+/// Writes the volumes that leave the mixed cells through their faces in the first of the directions `stride`. Reads phi
+/// in all neighbours and the velocity on both faces.
 template <int Dim>
 EULASTIC_INLINE void mixed_flux(const MixedCells &cells, const double *phi, const std::ptrdiff_t *stride,
                                 const double *velocity, double rate, double *flux) noexcept {
@@ -67,8 +68,9 @@ EULASTIC_INLINE void mixed_flux(const MixedCells &cells, const double *phi, cons
   }
 }
 
-/// phi -= difference of the fluxes - solid * difference of the Courant numbers; full cells between full cells and
-/// empty ones between empty ones keep their value exactly.
+/// Updates phi -= (difference of the fluxes) - solid (difference of the Courant numbers). Full cells between full cells
+/// and empty cells between empty cells keep their value exactly. `solid` is 1 where phi exceeded 1/2 before the first
+/// split, else 0.
 EULASTIC_INLINE void apply_flux(const Segment &s, ConstView flux, ConstView velocity, ConstView solid,
                                 std::ptrdiff_t step, double rate, double *phi) noexcept {
   const double *f = flux.row(s.j, s.k), *u = velocity.row(s.j, s.k), *c = solid.row(s.j, s.k);

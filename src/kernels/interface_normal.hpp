@@ -1,7 +1,9 @@
-// The normal of the interface in a cell from its 3^d neighbours: mixed Youngs-centred.
+// The normal of the interface in a cell from its 3^d neighbours, by the mixed Youngs-centred scheme (docs/method.md,
+// section 6).
 //
 // Youngs' gradient (Numerical methods for fluid dynamics, Academic Press, 1982) is robust; the slopes of columns of
-// three cells are exact for planes. Choice: Aulisa, Manservisi, Scardovelli & Zaleski, J. Comput. Phys. 225 (2007).
+// three cells are exact for planes. The choice follows Aulisa, Manservisi, Scardovelli & Zaleski, J. Comput. Phys. 225
+// (2007).
 #pragma once
 
 #include "kernels/isa.hpp"
@@ -12,12 +14,14 @@ namespace eulastic::kernels {
 
 inline constexpr double interface_normal_flops_2d = 30, interface_normal_flops_3d = 135;
 
-/// Points to larger phi, in cells of unit size, |a| + |b| + |c| = 1; 0 where there is none. In 2-D c = 0.
+/// The normal in cells of unit size points to larger phi and has |a| + |b| + |c| = 1; it is 0 where phi has no
+/// gradient. In 2-D c = 0.
 struct InterfaceNormal {
   double a, b, c;
 };
 
-/// Youngs: undivided central difference of phi along a, averaged 1-2-1 across b (and c).
+/// Returns the component along a of Youngs' gradient: the undivided central difference of phi, averaged 1-2-1 across b
+/// (and c).
 template <int Dim>
 EULASTIC_INLINE double youngs_component(const double *q, std::ptrdiff_t a, std::ptrdiff_t b,
                                         std::ptrdiff_t c) noexcept {
@@ -28,21 +32,21 @@ EULASTIC_INLINE double youngs_component(const double *q, std::ptrdiff_t a, std::
   return fma(4, difference(0), fma(2, sides, corners));
 }
 
-/// Centred: how the volume in columns of three cells along a changes along b, per cell.
+/// Returns the slope along b of the volume in columns of three cells along a, per cell.
 EULASTIC_INLINE double column_slope(const double *q, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
   const auto column = [q, a](std::ptrdiff_t at) { return (q[at - a] + q[at + a]) + q[at]; };
   return 0.5 * (column(b) - column(-b));
 }
 
-/// At q; a, b, c are the strides of the directions. Of equals the first is taken, so mirrored neighbours give the
-/// mirrored normal, to the bit.
+/// Returns the normal at q; a, b, c are the strides of the directions. Of equal inclinations the first direction is
+/// taken, so that mirrored neighbours give the mirrored normal with the same bits.
 template <int Dim>
 EULASTIC_INLINE InterfaceNormal interface_normal(const double *q, std::ptrdiff_t a, std::ptrdiff_t b,
                                                  std::ptrdiff_t c) noexcept {
   const double ga = youngs_component<Dim>(q, a, b, c), gb = youngs_component<Dim>(q, b, a, c);
   const double gc = Dim == 3 ? youngs_component<Dim>(q, c, a, b) : 0;
   const auto slope = [q](std::ptrdiff_t along, std::ptrdiff_t across) { return column_slope(q, along, across); };
-  // Columns along the direction in which the surface is least inclined; only where it is not seen edge on.
+  // Columns along the direction in which the surface is least inclined, among directions with a gradient.
   const double ab = slope(a, b), ac = Dim == 3 ? slope(a, c) : 0;
   const double ba = slope(b, a), bc = Dim == 3 ? slope(b, c) : 0;
   const double ca = Dim == 3 ? slope(c, a) : 0, cb = Dim == 3 ? slope(c, b) : 0;
@@ -58,7 +62,7 @@ EULASTIC_INLINE InterfaceNormal interface_normal(const double *q, std::ptrdiff_t
   double na = use_c ? ca : use_b ? ba : sign(ga);
   double nb = use_c ? cb : use_b ? sign(gb) : ab;
   double nc = use_c ? sign(gc) : use_b ? bc : ac;
-  // Youngs' normal where it is nearer to a diagonal: there columns of three are cut by the ends.
+  // Youngs' normal where it is closer to a diagonal: there columns of three cells truncate the interface.
   const double sa = __builtin_fabs(ga), sb = __builtin_fabs(gb), sc = __builtin_fabs(gc);
   const double two = sa > sb ? sa : sb, most = two > sc ? two : sc;
   const bool youngs = ((sa + sb) + sc) - most > least * most;

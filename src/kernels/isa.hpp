@@ -1,6 +1,7 @@
-// How kernels are compiled: a verb marked EULASTIC_CLONES exists twice, for the baseline (AVX2) and for AVX-512, and
-// the loader picks one; the kernels in it are always inlined, so that they are cloned with it. Inlined itself it would
-// be the baseline's. No contraction and explicit fma only: both clones give the same bits.
+// Compilation of kernels for several instruction sets. A routine marked EULASTIC_CLONES is compiled for the baseline
+// (AVX2) and for AVX-512, and the loader selects one. Kernels inside it are always inlined, so that they are compiled
+// with it; the routine itself must not be inlined, or it would be compiled for the baseline only. Contraction is off
+// and fma explicit, so that both give the same bits.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX512F__) && \
@@ -10,7 +11,7 @@
 #define EULASTIC_CLONES
 #endif
 #define EULASTIC_INLINE [[gnu::always_inline]] inline
-#define EULASTIC_BODY __attribute__((always_inline))  // of a lambda that a kernel calls for every point
+#define EULASTIC_BODY __attribute__((always_inline))  // for lambdas that a kernel calls for every point
 
 namespace eulastic::kernels {
 

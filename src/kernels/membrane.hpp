@@ -1,7 +1,8 @@
-// A membrane at one point: its surface deformation B_s = F P_0 F^T, tension and energy of its laws.
+// A membrane at one point: its surface strain B_s = F P_0 F^T, and tension and energy of its laws.
 //
-// B_s has the normal as eigenvector of 0; J^2 = ((tr B_s)^2 - tr B_s^2)/2 is the stretch of area squared. In 2-D the
-// third direction is not stretched. docs/method.md, section 18; Barthes-Biesel, Annu. Rev. Fluid Mech. 48 (2016).
+// The normal is an eigenvector of B_s with the eigenvalue 0; J^2 = ((tr B_s)^2 - tr B_s^2)/2 is the area stretch
+// squared. In 2-D the third direction is not stretched. docs/method.md, section 18; Barthes-Biesel, Annu. Rev. Fluid
+// Mech. 48 (2016).
 #pragma once
 
 #include "kernels/membrane_law.hpp"
@@ -24,7 +25,7 @@ EULASTIC_INLINE double trace_of(const Tensor<Dim> &t) noexcept {
   return sum;
 }
 
-/// 1 - n n.
+/// Returns P = 1 - n n.
 template <int Dim>
 EULASTIC_INLINE Tensor<Dim> tangential(const Vector<Dim> &n) noexcept {
   Tensor<Dim> P;
@@ -33,7 +34,7 @@ EULASTIC_INLINE Tensor<Dim> tangential(const Vector<Dim> &n) noexcept {
   return P;
 }
 
-/// P B P.
+/// Returns P B P.
 template <int Dim>
 EULASTIC_INLINE Tensor<Dim> project(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
   Vector<Dim> Bn{};
@@ -49,8 +50,8 @@ EULASTIC_INLINE Tensor<Dim> project(const Tensor<Dim> &B, const Vector<Dim> &n) 
   return out;
 }
 
-/// Tangential tensors B[field][m] of the planes normal to from[d][m], turned with them into the plane normal to n by
-/// the smallest rotation and multiplied by share[m]; m < count.
+/// Rotates tangential tensors by the smallest rotation of their normals into n, and multiplies them by share[m], m <
+/// count. B[field][m] are the components of the tensors, from[d][m] their normals.
 template <int Dim, int Most>
 EULASTIC_INLINE void turn(const Vector<Dim> &n, int count, const double *share, const double (*from)[Most],
                           double (*B)[Most]) noexcept {
@@ -84,28 +85,28 @@ EULASTIC_INLINE void turn(const Vector<Dim> &n, int count, const double *share, 
     }
 }
 
-/// F P_0 F^T of a surface with the normal n in a body with B = F F^T, P_0 that of the surface before F: B less what F
-/// makes of its normal there, which lies along B n. Exactly P where B is 1.
+/// Returns F P_0 F^T of a surface with the normal n in a body with B = F F^T, where P_0 is the projection of the
+/// surface before F: B - Bn (Bn)^T/(n.Bn). The result is exactly P where B = 1.
 template <int Dim>
 EULASTIC_INLINE Tensor<Dim> surface_part(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
   Vector<Dim> Bn{};
   double nBn = 0;
-  bool rest = true;
+  bool undeformed = true;
   for (int a = 0; a < Dim; ++a) {
     for (int b = 0; b < Dim; ++b) {
       Bn[a] = fma(B[a][b], n[b], Bn[a]);
-      rest = rest && B[a][b] == (a == b ? 1 : 0);
+      undeformed = undeformed && B[a][b] == (a == b ? 1 : 0);
     }
     nBn = fma(n[a], Bn[a], nBn);
   }
-  if (rest) return tangential<Dim>(n);
+  if (undeformed) return tangential<Dim>(n);
   Tensor<Dim> out;
   for (int a = 0; a < Dim; ++a)
     for (int b = 0; b < Dim; ++b) out[a][b] = B[a][b] - Bn[a] * Bn[b] / nBn;
   return out;
 }
 
-/// J^2 and tr B_s, those of the third direction in 2-D included.
+/// tr B_s and J^2, including the third direction in 2-D.
 struct SurfaceStrain {
   double trace, area_squared;
 };
@@ -119,8 +120,9 @@ EULASTIC_INLINE SurfaceStrain surface_strain(const Tensor<Dim> &B) noexcept {
   return {sum, 0.5 * twice > least ? 0.5 * twice : least};
 }
 
-/// Of a strain in the plane normal to n whose area squared is below `least`: both principal values as far apart as that
-/// leaves, about a mean that it bounds too. Returns whether it was.
+/// Bounds the area of a strain in the plane normal to n: if its area squared is below `least`, the principal values are
+/// moved towards their mean, which is raised if necessary, until the area squared is `least`. Returns whether the
+/// strain was changed.
 template <int Dim>
 EULASTIC_INLINE bool keep_area(const Vector<Dim> &n, double least, Tensor<Dim> *B) noexcept {
   constexpr int values = Dim - 1;
@@ -129,10 +131,10 @@ EULASTIC_INLINE bool keep_area(const Vector<Dim> &n, double least, Tensor<Dim> *
     for (int b = 0; b < Dim; ++b) square = fma((*B)[a][b], (*B)[a][b], square);
   const double trace = trace_of<Dim>(*B), mean = trace / values;
   const double area_squared = Dim == 2 ? trace : 0.5 * fma(trace, trace, -square);
-  if (!(area_squared < least)) return false;  // not a number either: guards look for it
+  if (!(area_squared < least)) return false;  // false for NaN as well, which the guards detect
   const double root = Dim == 2 ? least : __builtin_sqrt(least), raised = mean > root ? mean : root;
-  const double apart = mean * mean - area_squared, left = raised * raised - least;
-  const double share = Dim == 3 && apart > left ? __builtin_sqrt(left / apart) : 0;
+  const double spread = mean * mean - area_squared, left = raised * raised - least;
+  const double share = Dim == 3 && spread > left ? __builtin_sqrt(left / spread) : 0;
   for (int a = 0; a < Dim; ++a)
     for (int b = 0; b < Dim; ++b) {
       const double plane = (a == b) - n[a] * n[b];
@@ -141,14 +143,16 @@ EULASTIC_INLINE bool keep_area(const Vector<Dim> &n, double least, Tensor<Dim> *
   return true;
 }
 
-/// B turned by the smallest rotation from its own plane into that normal to n, by 45 degrees at most. What a mean of
-/// planes has along its normal is given back to all directions alike: such a mean keeps the trace, and J would grow.
+/// Returns B rotated by the smallest rotation from its own plane into that normal to n, by at most 45 degrees. The
+/// normal part of a mean over different planes is distributed over all tangential directions. Such a mean keeps the
+/// trace, but its J would be too large.
 template <int Dim>
 EULASTIC_INLINE Tensor<Dim> project_surface(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
   constexpr double least = 1e-4;
   const Tensor<Dim> A = project<Dim>(B, n);
   double trace = 0, squares = 0, across = 0;
-  Vector<Dim> tilt{};  // B n, along the plane; then times the inverse of A: tangent of the angle between the planes
+  // first B n along the plane, then times the inverse of A: the tangent of the angle between the planes
+  Vector<Dim> tilt{};
   for (int a = 0; a < Dim; ++a) {
     trace += A[a][a];
     for (int b = 0; b < Dim; ++b) {
@@ -190,14 +194,14 @@ EULASTIC_INLINE Tensor<Dim> project_surface(const Tensor<Dim> &B, const Vector<D
       for (int c = 0; c < Dim; ++c) out[a][b] = fma(MA[a][c], M[c][b], out[a][b]);
     whole += out[a][a];
   }
-  const double given = (across - along) / (whole > least ? whole : least);  // round 0 and of either sign
-  const double scale = 1 + (given > -0.5 ? given : -0.5);
+  const double correction = (across - along) / (whole > least ? whole : least);  // close to 0, of either sign
+  const double scale = 1 + (correction > -0.5 ? correction : -0.5);
   for (auto &row : out)
     for (double &value : row) value *= scale;
   return out;
 }
 
-/// Force per length of the deformed membrane, alpha B_s + beta P, and energy per area of the undeformed one; `area`: J.
+/// Force per length of the deformed membrane, alpha B_s + beta P, and energy per area of the undeformed one. area: J.
 struct MembraneState {
   double alpha, beta, energy, area;
 };
@@ -209,13 +213,13 @@ EULASTIC_INLINE MembraneState membrane_state(const Membrane &m, const SurfaceStr
   return {G * (I1 + 1) / J, G * J * (C * I2 - 1), 0.25 * G * (I1 * I1 + 2 * I1 - 2 * I2 + C * I2 * I2), J};
 }
 
-/// The larger one of the two principal stretches along the surface.
+/// Returns the larger of the two principal stretches along the surface.
 EULASTIC_INLINE double larger_stretch(const SurfaceStrain &s) noexcept {
   const double square = s.trace * s.trace - 4 * s.area_squared;
   return __builtin_sqrt(0.5 * (s.trace + __builtin_sqrt(square > 0 ? square : 0)));
 }
 
-/// The part of the energy that the change of area alone would take, stretched alike in all directions of the surface.
+/// Returns the energy of the same area stretch with equal stretches in all directions of the surface.
 EULASTIC_INLINE double area_energy(const Membrane &m, const SurfaceStrain &s) noexcept {
   const double J = __builtin_sqrt(s.area_squared);
   return membrane_state(m, {2 * J, s.area_squared}).energy;

@@ -1,14 +1,14 @@
-// The numbers of an elastic surface around a fluid.
+// Parameters of an elastic surface around a fluid.
 #pragma once
 
 namespace eulastic::kernels {
 
 enum class MembraneLaw { neo_hookean, skalak };
-/// What remembers the shape at rest: the strain on the grid alone, or markers on the surface.
+/// Storage of the undeformed shape: in the strain on the grid alone, or also in markers on the surface.
 enum class MembraneScheme { grid, markers };
 
-/// Shear modulus G_s (force per length) and, of Skalak's law, C: the modulus of area is 3 G_s of a neo-Hookean membrane
-/// and (1 + 2 C) G_s of Skalak's.
+/// Shear modulus G_s (force per length) and, for Skalak's law, C: the area modulus is 3 G_s for a neo-Hookean membrane
+/// and (1 + 2 C) G_s for Skalak's law.
 struct Membrane {
   MembraneLaw law = MembraneLaw::neo_hookean;
   double shear_modulus = 0, area_modulus = 1;

@@ -1,4 +1,4 @@
-// Second-order central terms of the momentum equation (2) at the faces of one component, added to row rates.
+// Central terms of second order of the momentum equation (2) on the faces of one component, added to rates by rows.
 #pragma once
 
 #include "kernels/stencils.hpp"
@@ -7,7 +7,7 @@ namespace eulastic::kernels {
 
 inline constexpr double viscous_pressure_flops_per_direction = 6;
 
-/// Compact Laplacian of a centred field at q[0].
+/// Returns the compact Laplacian of a field at q[0].
 template <int Dim>
 EULASTIC_INLINE double laplacian(const double *q, std::ptrdiff_t sy, std::ptrdiff_t sz, InverseSquares h) noexcept {
   const double twice = 2 * q[0];
@@ -17,7 +17,7 @@ EULASTIC_INLINE double laplacian(const double *q, std::ptrdiff_t sy, std::ptrdif
   return sum;
 }
 
-/// out = advection + nu lap q - (p - p[-step]) pressure_factor + force; `viscosity` = nu/h_d^2.
+/// Computes out = advection + nu lap q - (p - p[-step]) pressure_factor + force. `viscosity` = nu/h_d^2.
 template <int Dim>
 EULASTIC_INLINE void fluid_rate(const Segment &s, const double *advection, ConstView q, InverseSquares viscosity,
                                 ConstView p, std::ptrdiff_t step, double pressure_factor, double force,
@@ -31,7 +31,7 @@ EULASTIC_INLINE void fluid_rate(const Segment &s, const double *advection, Const
   }
 }
 
-/// div v at centres times `density`, into out.
+/// Computes out = density div v at centres.
 template <int Dim>
 EULASTIC_INLINE void divergence(const Segment &s, ConstView u, ConstView v, ConstView w, const double *inverse_spacing,
                                 double density, double *out) noexcept {
@@ -47,7 +47,7 @@ EULASTIC_INLINE void divergence(const Segment &s, ConstView u, ConstView v, Cons
   }
 }
 
-/// delta p of (11), without its mean and that of p: kappa = beta^2 dt^2, g = beta^2 dt^2 gamma.
+/// The increment delta p of (11), less its mean and that of p: kappa = beta^2 dt^2, g = beta^2 dt^2 gamma.
 struct AcmIncrement {
   double kappa, g, inverse_dt, mean;
   EULASTIC_BODY double operator()(double divergence, double pressure) const noexcept {

@@ -1,26 +1,26 @@
-// The Mooney-Rivlin law: sigma = phi dev(2 c1 B + 2 c2 (tr(B) B - B.B) + 4 c3 (tr B - 3) B). tr(B) B - B.B = II I -
-// cof B: with the minors M_ab = B_aa B_bb - B_ab^2 its diagonal is M_ab + M_ac, and B_cc B_ab - B_ac B_bc stands off it
-// (Sugiyama et al., J. Comput. Phys. 230, 2011; docs/method.md).
+// The Mooney-Rivlin law: sigma = phi dev(2 c1 B + 2 c2 (tr(B) B - B.B) + 4 c3 (tr B - 3) B). With tr(B) B - B.B = II I
+// - cof B and the minors M_ab = B_aa B_bb - B_ab^2, its diagonal is M_ab + M_ac and its off-diagonal component B_cc
+// B_ab - B_ac B_bc (Sugiyama et al., J. Comput. Phys. 230, 2011; docs/method.md, section 13).
 #pragma once
 
 #include "kernels/tensor.hpp"
 
 namespace eulastic::kernels {
 
-/// M_ab at a centre: the square on the edges, then the average.
+/// Returns M_ab at a centre; the squares are formed on the edges and then averaged.
 EULASTIC_INLINE double minor(const double *aa, const double *bb, const double *ab, std::ptrdiff_t a,
                              std::ptrdiff_t b) noexcept {
   const double squares = (ab[0] * ab[0] + ab[a] * ab[a]) + (ab[b] * ab[b] + ab[a + b] * ab[a + b]);
   return fma(*aa, *bb, -0.25 * squares);
 }
 
-/// B_ac B_bc on the edge ab: formed at the two vertices, then averaged along c.
+/// Returns B_ac B_bc on the edge ab; the products are formed at the two vertices and then averaged along c.
 EULASTIC_INLINE double vertex_product(const TensorAt<3> &t, std::ptrdiff_t i) noexcept {
   const double *ac = t.ac + i, *bc = t.bc + i;
   return 0.125 * ((bc[0] + bc[-t.a]) * (ac[0] + ac[-t.b]) + (bc[t.c] + bc[t.c - t.a]) * (ac[t.c] + ac[t.c - t.b]));
 }
 
-/// Members as those of NeoHookean.
+/// The members are documented in NeoHookean.
 struct MooneyRivlin {
   static constexpr bool couples_edges = true;
   double k1, k2, k3;  ///< 2 c1, 2 c2, 4 c3
@@ -54,12 +54,12 @@ struct MooneyRivlin {
     else
       return stress;
   }
-  /// 2 c1 + 2 c2 B_cc + 4 c3 (tr B - 3).
+  /// Returns 2 c1 + 2 c2 B_cc + 4 c3 (tr B - 3).
   template <int Dim>
   EULASTIC_INLINE double shear_factor(const TensorAt<Dim> &t, std::ptrdiff_t i) const noexcept {
     return fma(k3, excess_trace(t, i), fma(k2, Dim == 3 ? t.cc[i] : 1.0, k1));
   }
-  /// c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2.
+  /// Returns c1 (I - 3) + c2 (II - 3) + c3 (I - 3)^2.
   template <int Dim>
   EULASTIC_INLINE double energy(const TensorAt<Dim> &t, std::ptrdiff_t i) const noexcept {
     const double *aa = t.aa + i, *bb = t.bb + i, *cc = t.cc + i;

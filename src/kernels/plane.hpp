@@ -1,8 +1,9 @@
-// A plane through a unit cell: the solid is m.x < alpha, 0 <= x <= 1 from the corner that lies deepest in it, m >= 0
-// with sum 1. The volume below it, its constant alpha from the volume, and what of it leaves through a face.
+// A plane that cuts a unit cell: the solid is m.x < alpha, with 0 <= x <= 1 from the corner that lies deepest in the
+// solid, and m >= 0 with the sum 1. Computes the volume below the plane, alpha from the volume, and the volume that
+// leaves through a face.
 //
-// Scardovelli & Zaleski, J. Comput. Phys. 164 (2000); docs/method.md, section 6. V(1 - alpha) = 1 - V(alpha), so all
-// is worked out for the smaller part of the cell: there no two terms cancel, however small a component of m is.
+// Scardovelli & Zaleski, J. Comput. Phys. 164 (2000); docs/method.md, section 6. Because V(1 - alpha) = 1 - V(alpha),
+// all is computed for the smaller part of the cell, where no terms cancel, however small a component of m is.
 #pragma once
 
 #include "kernels/interface_normal.hpp"
@@ -14,11 +15,11 @@ namespace eulastic::kernels {
 
 inline constexpr double cube_root_flops = 17;
 
-/// x^(1/3) for normal x > 0, to 2e-14 of it.
+/// Returns x^(1/3) for normal x > 0 with a relative error below 2e-14.
 EULASTIC_INLINE double cube_root(double x) noexcept {
   constexpr std::uint64_t two_52 = 0x4330000000000000;
   const double upper = __builtin_bit_cast(double, (__builtin_bit_cast(std::uint64_t, x) >> 32) | two_52) - 0x1p52;
-  const double third = fma(upper, 1. / 3, 715094163 + 0x1p52);  // its last bits hold the nearest integer
+  const double third = fma(upper, 1. / 3, 715094163 + 0x1p52);  // the last bits hold the nearest integer
   double t = __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, third) << 32);
   for (int step = 0; step < 2; ++step) {
     const double cube = t * t * t;
@@ -39,13 +40,13 @@ struct Ascending {
 };
 template <int Dim>
 EULASTIC_INLINE Ascending ascending(double a, double b, double c) noexcept {
-  constexpr double least = 1e-40;  // in place of 0: nothing is divided by 0, and no product underflows
+  constexpr double least = 1e-40;  // replaces 0, so that no divisor is 0 and no product underflows
   const double low = smaller(a, b), high = larger(a, b);
   if constexpr (Dim == 2) return {larger(low, least), 0, high};
   return {larger(smaller(low, c), least), larger(larger(low, smaller(high, c)), least), larger(high, c)};
 }
 
-/// Volume below the plane m.x = alpha; any m >= 0 of sum > 0. 2-D ignores c.
+/// Returns the volume below the plane m.x = alpha, for any m >= 0 with a sum > 0. 2-D ignores c.
 template <int Dim>
 EULASTIC_INLINE double volume_below(double alpha, double a, double b, double c) noexcept {
   const double scale = 1 / (Dim == 2 ? a + b : a + b + c), at = alpha * scale;
@@ -66,7 +67,7 @@ EULASTIC_INLINE double volume_below(double alpha, double a, double b, double c) 
   return inside > 0.5 ? 1 - volume : volume;
 }
 
-/// alpha of the plane with volume phi, 0 <= phi <= 1, below it, to 1e-14; sum of m = 1. 2-D ignores c.
+/// Returns alpha of the plane with the volume phi, 0 <= phi <= 1, below it, to 1e-14. The sum of m is 1. 2-D ignores c.
 template <int Dim>
 EULASTIC_INLINE double plane_constant(double phi, double a, double b, double c) noexcept {
   const auto [m1, m2, m3] = ascending<Dim>(a, b, c);
@@ -76,7 +77,7 @@ EULASTIC_INLINE double plane_constant(double phi, double a, double b, double c) 
     const double linear = fma(m3, w, 0.5 * m1);
     t = linear < m1 ? __builtin_sqrt(2 * m1 * m3 * w) : linear;
   } else {
-    // Newton's method for the middle piece of V; the root without its cubes, where it starts, is too small at most.
+    // Newton's method for the middle piece of V. It starts from the root without the cubes, which is never too large.
     const double m12 = m1 + m2, most = smaller(m12, 0.5), six_w = 6 * m2 * m3 * w;
     const double linear = fma(m3, w, 0.5 * m12);
     double middle = 0.5 * (m1 + __builtin_sqrt(larger(fma(m1, -m1, 4 * six_w) * (1. / 3), 0)));
@@ -96,8 +97,8 @@ EULASTIC_INLINE double plane_constant(double phi, double a, double b, double c) 
   return phi > 0.5 ? 1 - t : t;
 }
 
-/// How fast the volume below the plane grows with alpha; times m of each direction it is the plane's area seen along
-/// it, in faces of the cell. Sum of m = 1. 2-D ignores c.
+/// Returns the derivative of the volume below the plane with respect to alpha; times m_d it is the area of the plane
+/// projected along d, in faces of the cell. The sum of m is 1. 2-D ignores c.
 template <int Dim>
 EULASTIC_INLINE double volume_slope(double alpha, double a, double b, double c) noexcept {
   const auto [m1, m2, m3] = ascending<Dim>(a, b, c);
@@ -108,9 +109,9 @@ EULASTIC_INLINE double volume_slope(double alpha, double a, double b, double c) 
   return t < m1 ? t * t / twice : t < m12 ? middle : 1 / m3;
 }
 
-/// Volume that leaves the cell through one face, in cells, 0 <= courant <= 1 of which lie before it. `towards` is the
-/// component of the normal towards that face, positive where phi grows, `across1` and `across2` the sizes of the
-/// others, all 0 where there is no normal: then it is courant phi.
+/// Returns the volume that leaves the cell through one face, in cells, at the Courant number 0 <= courant <= 1.
+/// `towards` is the component of the normal towards that face, positive where phi grows; `across1` and `across2` are
+/// the sizes of the other components. If all are 0, the result is courant phi.
 template <int Dim>
 EULASTIC_INLINE double plane_flux(double phi, double alpha, double towards, double across1, double across2,
                                   double courant) noexcept {
@@ -120,7 +121,7 @@ EULASTIC_INLINE double plane_flux(double phi, double alpha, double towards, doub
   return smaller(larger(flux, larger(courant - (1 - phi), 0)), smaller(courant, phi));
 }
 
-/// Of a cell with 0 < phi < 1; `face`: areas of the cell's faces across every direction.
+/// Returns the area of the plane in a cell with 0 < phi < 1. `face`: areas of the cell's faces across every direction.
 template <int Dim>
 EULASTIC_INLINE double plane_area(const double *q, const std::ptrdiff_t *stride, const double *face) noexcept {
   const InterfaceNormal n = interface_normal<Dim>(q, stride[0], stride[1], stride[2]);

@@ -1,4 +1,4 @@
-// Where a kernel works: a piece of a row, or vectors of points from several rows in one loop.
+// The points that a kernel processes: a piece of a row, or vectors of points from several rows in one loop.
 #pragma once
 
 #include "grid/segment.hpp"
@@ -6,20 +6,20 @@
 
 namespace eulastic::kernels {
 
-/// Vectors of 8 points, as offsets from the origin of a field. Segments of a body are a few vectors long, and entering
-/// a loop costs as much as three of them: a batch enters it once for many segments.
+/// Vectors of 8 points, stored as offsets from the origin of a field. Segments of a body are a few vectors long, and
+/// entering a loop costs as much as processing three vectors; a batch enters it once for many segments.
 struct Batch {
   static constexpr int width = 8, vectors = 64, points = width * vectors;
   std::ptrdiff_t first[vectors];
   int count = 0;
-  int size = width;  ///< points of each vector; fewer only at the end of rows
-  /// Values at these and the offsets of a vector are asked for, into the second-level cache, when a loop comes to it:
-  /// a few at a time, as many at once would wait for each other.
+  int size = width;  ///< points of each vector; fewer only at the ends of rows
+  /// Fields to prefetch into the second-level cache at the offsets of each vector when a loop reaches it, because many
+  /// prefetches at once would wait for each other. Null: none.
   const double *ahead[2] = {nullptr, nullptr};
 };
 
-/// Adds the points [begin, end) of a row to the batch and does `work(batch)` whenever it is full; the rest of a row
-/// that does not fill a vector is done at once. Finish with work(batch).
+/// Adds the points [begin, end) of a row to the batch and calls work(batch) whenever it is full. A remainder of a row
+/// that does not fill a vector is processed at once. Call work(batch) after the last row.
 template <class Work>
 EULASTIC_INLINE void gather(Batch &batch, std::ptrdiff_t row, int begin, int end, Work work) {
   for (int i = begin; i < end; i += Batch::width) {
@@ -37,7 +37,8 @@ EULASTIC_INLINE void gather(Batch &batch, std::ptrdiff_t row, int begin, int end
   }
 }
 
-/// body(offset, slot) for the points of a segment: offset from the origin of q and of every field like it, slot = i.
+/// Calls body(offset, slot) for the points of a segment: offset from the origin of q and of every field with its
+/// layout, slot = i.
 template <class Body>
 EULASTIC_INLINE void for_points(const Segment &s, ConstView q, Body body) noexcept {
   const std::ptrdiff_t row = s.j * q.sy + s.k * q.sz;
@@ -45,7 +46,7 @@ EULASTIC_INLINE void for_points(const Segment &s, ConstView q, Body body) noexce
   for (int i = s.i_begin; i < s.i_end; ++i) body(row + i, i);
 }
 
-/// The same for a batch; slots count from 0, eight for every vector.
+/// Calls body(offset, slot) for the points of a batch; slots count from 0, eight for every vector.
 template <class Body>
 EULASTIC_INLINE void for_points(const Batch &batch, ConstView, Body body) noexcept {
   if (batch.size == Batch::width) {

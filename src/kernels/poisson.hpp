@@ -1,4 +1,4 @@
-// The Laplacian on lines of unequal cells, the transfers between two grids row by row, and sums of products.
+// The Laplacian on lines of unequal cells, transfers between two grids row by row, and sums of products.
 #pragma once
 
 #include "grid/segment.hpp"
@@ -9,8 +9,8 @@
 
 namespace eulastic::kernels {
 
-/// Couplings of the cells of one row to their neighbours, 1/(width x distance of centres); 0 at a wall, where
-/// therefore no ghost is needed. Along x one number per cell.
+/// Couplings of the cells of one row to their neighbours, 1/(width x distance of centres); 0 at a wall, so that no
+/// ghost is needed there. Along x there is one number per cell.
 struct LineCoefficients {
   const double *x_low, *x_high;
   double y_low, y_high, z_low, z_high;
@@ -18,7 +18,7 @@ struct LineCoefficients {
 
 inline constexpr double line_laplacian_flops_per_direction = 6;
 
-/// Sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]) at cell i of the row q.
+/// Returns the sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]) at cell i of the row q.
 template <int Dim>
 EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy, std::ptrdiff_t sz,
                                       const LineCoefficients &c) noexcept {
@@ -34,8 +34,8 @@ EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy,
   return sum;
 }
 
-/// sum += weight (r - factor lap r), of so many rows from s on: what one relaxation from zero leaves of the right-hand
-/// side r.
+/// Adds sum += weight (r - factor lap r) for `Rows` rows from s on: the residual of the right-hand side r after one
+/// relaxation from zero.
 template <int Dim, int Rows>
 EULASTIC_INLINE void add_relaxed_residual(const Segment &s, ConstView r, const LineCoefficients *coefficients,
                                           const double *weight, double factor, double *sum) noexcept {
@@ -57,7 +57,7 @@ EULASTIC_INLINE void add_relaxed_residual(const Segment &s, ConstView r, const L
   }
 }
 
-/// out = q + factor (r - lap q), one relaxation.
+/// Computes out = q + factor (r - lap q), one relaxation.
 template <int Dim>
 EULASTIC_INLINE void relax(const Segment &s, ConstView q, ConstView r, LineCoefficients c, double factor,
                            View out) noexcept {
@@ -69,47 +69,47 @@ EULASTIC_INLINE void relax(const Segment &s, ConstView q, ConstView r, LineCoeff
     next[i] = fma(factor, f[i] - line_laplacian<Dim>(old, i, sy, sz, c), old[i]);
 }
 
-/// Pairs of fine values to one coarse value: coarse[i] = low[i] fine[2i] + high[i] fine[2i + 1].
+/// Restricts pairs of fine values to coarse values: coarse[i] = low[i] fine[2i] + high[i] fine[2i + 1].
 EULASTIC_INLINE void join_pairs(int n, const double *fine, const double *low, const double *high,
                                 double *coarse) noexcept {
 #pragma omp simd
   for (int i = 0; i < n; ++i) coarse[i] = fma(low[i], fine[2 * i], high[i] * fine[2 * i + 1]);
 }
 
-/// Rows of coarse cells around a row of fine ones: its own, the neighbour in y, and both of them a plane on in z. The
-/// shares are those of the neighbours.
+/// Rows of coarse cells around a row of fine cells: the row that contains it, its neighbour in y, and the same two rows
+/// in the neighbouring plane in z. y and z are the weights of the neighbours.
 struct Corners {
   const double *row[4];
   double y, z;
 
-  /// Interpolated along y and z.
+  /// Returns the coarse values interpolated along y and z.
   EULASTIC_INLINE double at(int i) const noexcept {
     const double near = fma(y, row[1][i] - row[0][i], row[0][i]), far = fma(y, row[3][i] - row[2][i], row[2][i]);
     return fma(z, far - near, near);
   }
 };
 
-/// out = factor r + what the corners say of the same cells.
+/// Computes out = factor r + the interpolated coarse values, for directions x that are not coarsened.
 EULASTIC_INLINE void add_interpolated(int begin, int end, Corners coarse, double factor, const double *r,
                                       double *out) noexcept {
 #pragma omp simd
   for (int i = begin; i < end; ++i) out[i] = fma(factor, r[i], coarse.at(i));
 }
 
-/// The same of the two halves of coarse cells; low and high are the shares of the neighbours in x.
+/// The same where x is coarsened by two; low and high are the weights of the neighbours in x.
 EULASTIC_INLINE void add_interpolated_pairs(int begin, int end, Corners coarse, const double *low, const double *high,
                                             double factor, const double *r, double *out) noexcept {
 #pragma omp simd
   for (int i = begin; i < end; ++i) {
-    const double here = coarse.at(i);
-    out[2 * i] = fma(factor, r[2 * i], fma(low[i], coarse.at(i - 1) - here, here));
-    out[2 * i + 1] = fma(factor, r[2 * i + 1], fma(high[i], coarse.at(i + 1) - here, here));
+    const double own = coarse.at(i);
+    out[2 * i] = fma(factor, r[2 * i], fma(low[i], coarse.at(i - 1) - own, own));
+    out[2 * i + 1] = fma(factor, r[2 * i + 1], fma(high[i], coarse.at(i + 1) - own, own));
   }
 }
 
-/// N sums of products over [0, n), at most one block of the exact sums, each in eight fixed lanes (absolute index mod
-/// 8) and a fixed tree; the first point has absolute index `first`. product(i, add) calls add(s, a, b) for every sum s.
-/// All of them go through the points together: one alone would wait for its own last addition.
+/// Computes N sums of products over [0, n), at most one block of the exact sums, each in eight fixed lanes (absolute
+/// index mod 8) and a fixed tree; the first point has the absolute index `first`. product(i, add) calls add(s, a, b)
+/// for every sum s. All sums are computed in one loop, because a single one would wait for its own last addition.
 template <int N, class Product>
 EULASTIC_INLINE void lane_sums(int n, std::int64_t first, Product product, double *sum) noexcept {
   double lane[N][8];
@@ -126,12 +126,12 @@ EULASTIC_INLINE void lane_sums(int n, std::int64_t first, Product product, doubl
     for (; i < n && ((first + i) & 7); ++i) at(i, static_cast<int>((first + i) & 7));
   }
   for (; i + 8 <= n; i += 8) {
-    asm volatile("");  // two groups at a time are half as wide for GCC 12, and their sums wait in memory
+    asm volatile("");  // GCC 12 would combine two groups at half the vector width and spill the sums to memory
 #pragma omp simd
     for (int l = 0; l < 8; ++l) at(i + l, l);
   }
   for (int l = 0; i < n; ++i, ++l) at(i, l);
-  for (int s = 0; s < N; ++s) {  // in halves: ((0 4) (2 6)) ((1 5) (3 7))
+  for (int s = 0; s < N; ++s) {  // a fixed tree: ((0 4) (2 6)) ((1 5) (3 7))
     double half[4];
 #pragma omp simd
     for (int l = 0; l < 4; ++l) half[l] = lane[s][l] + lane[s][l + 4];

@@ -1,11 +1,11 @@
-// Shear on edges that solid and fluid share, as the solid alone has it; docs/method.md, section 16, (29b) and (29c).
+// Shear of the solid on edges that solid and fluid share; docs/method.md, section 16, (29b) and (29c).
 #pragma once
 
 #include "kernels/stencils.hpp"
 
 namespace eulastic::kernels {
 
-/// Strides and 1/h of the directions a, b, c in that order; 2-D: c is unused.
+/// Strides and 1/h of the directions a, b, c in that order. In 2-D c is unused.
 struct Directions {
   std::ptrdiff_t a, b, c;
   double ia, ib, ic;
@@ -18,9 +18,9 @@ struct Directions {
   EULASTIC_INLINE double inverse() const noexcept {
     return X == 0 ? ia : X == 1 ? ib : ic;
   }
-  /// With directions X and Y first.
+  /// Returns the directions with X and Y first.
   template <int X, int Y>
-  EULASTIC_INLINE Directions seen_from() const noexcept {
+  EULASTIC_INLINE Directions reordered() const noexcept {
     constexpr int Z = 3 - X - Y;
     return {stride<X>(), stride<Y>(), stride<Z>(), inverse<X>(), inverse<Y>(), inverse<Z>()};
   }
@@ -30,32 +30,33 @@ struct Directions {
 struct MixtureShear {
   const double *v[3];
 
-  /// h_y dv_x/dx_y on the edge xy that lies o from the point.
+  /// Returns h_y dv_x/dx_y on the edge xy at offset o from the point.
   template <int X, int Y>
   EULASTIC_INLINE double slope(const Directions &d, std::ptrdiff_t o) const noexcept {
     return v[X][o] - v[X][o - d.stride<Y>()];
   }
 };
 
-/// What the solid has of the rate of shear of an edge: `part` of it; the rest is a kink, of which derivatives along b
-/// have the share `along`.
+/// The solid has the factor `part` of the rate of shear of an edge, 1 + (r - 1) q in (29c). The rest is a kink of the
+/// velocity, of which derivatives along b have the share `along`.
 struct EdgeKink {
   double part, along;
 };
 
-/// Of the edge ab at `phi`; `excess` = mu_s/mu_f - 1.
+/// Returns the kink on the edge ab at `phi`; `excess` = mu_s/mu_f - 1.
 template <int Dim>
 EULASTIC_INLINE EdgeKink edge_kink(const double *phi, const Directions &d, double excess) noexcept {
   const double *f = phi, low = f[-d.a] + f[-d.a - d.b], high = f[0] + f[-d.b];
   const double nx = d.ia * (high - low), ny = d.ib * ((f[0] + f[-d.a]) - (f[-d.b] + f[-d.a - d.b]));
   const double nz = Dim == 3 ? 0.25 * d.ic * (sum4(f + d.c, -d.a, -d.b) - sum4(f - d.c, -d.a, -d.b)) : 0;
-  const double xx = nx * nx, yy = ny * ny, plane = xx + yy, all = plane + nz * nz, some = all > 0 ? all : 1;
-  const double normal = (plane - 4 * (xx * (yy / some))) / some;  // of the tensor ab, its shear between n and tangents
+  const double xx = nx * nx, yy = ny * ny, plane = xx + yy, sum = plane + nz * nz, divisor = sum > 0 ? sum : 1;
+  // share of shear between n and tangents in the tensor ab
+  const double normal = (plane - 4 * (xx * (yy / divisor))) / divisor;
   const double rest = 1 - average4(f, -d.a, -d.b), below = rest < 1 ? rest : 1, fluid = below > 0 ? below : 0;
   return {fma(1 / fma(excess, fluid, 1) - 1, normal, 1), plane > 0 ? yy / plane : 0.5};
 }
 
-/// Those of the solid. `phi` at the point, too.
+/// Velocity differences of the solid by (29c). `phi` is at the point, too.
 template <int Dim>
 struct SolidShear {
   const double *v[3], *phi;
@@ -63,7 +64,7 @@ struct SolidShear {
 
   template <int X, int Y>
   EULASTIC_INLINE double slope(const Directions &d, std::ptrdiff_t o) const noexcept {
-    const Directions seen = d.seen_from<X, Y>();
+    const Directions seen = d.reordered<X, Y>();
     const EdgeKink kink = edge_kink<Dim>(phi + o, seen, excess);
     const double own = v[X][o] - v[X][o - seen.b], other = v[Y][o] - v[Y][o - seen.a];
     return fma((kink.part - 1) * kink.along, own + seen.ia / seen.ib * other, own);
@@ -72,12 +73,12 @@ struct SolidShear {
 
 /// The solid has the viscosity of the fluid.
 struct SameViscosity {
-  /// The factor of the elastic stress of the edge ab at `phi`.
+  /// Returns the factor of the elastic stress on the edge ab at `phi`.
   template <int Dim>
   EULASTIC_INLINE double part(const double *, const Directions &) const noexcept {
     return 1;
   }
-  /// Velocity differences that stretch B, from the velocities along the directions and phi.
+  /// Returns the velocity differences that stretch B, from the velocities along the directions and phi.
   template <int Dim>
   EULASTIC_INLINE MixtureShear shear(const double *va, const double *vb, const double *vc,
                                      const double *) const noexcept {
@@ -85,7 +86,7 @@ struct SameViscosity {
   }
 };
 
-/// It has its own.
+/// The solid has a viscosity of its own; `excess` = mu_s/mu_f - 1.
 struct OwnViscosity {
   double excess;
 

@@ -1,20 +1,21 @@
-// Two-point averages along any set of directions, and the velocity that carries a field of any staggering.
+// Averages over two points along any set of directions, and the velocity at the points of a field of any staggering.
 #pragma once
 
 #include "kernels/points.hpp"
 
 namespace eulastic::kernels {
 
-/// The smaller one of two slopes; 0 where they differ in sign.
+/// Returns the minmod of two slopes: the one of smaller size, 0 where their signs differ.
 EULASTIC_INLINE double minmod(double near, double far) noexcept {
   const double smaller = __builtin_fabs(near) < __builtin_fabs(far) ? near : far;
   return near * far > 0 ? smaller : 0;
 }
 
-/// Sum and mean of q over the 4 points {0, a} x {0, b}.
+/// Sum of q over the 4 points {0, a} x {0, b}.
 EULASTIC_INLINE double sum4(const double *q, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
   return (q[0] + q[a]) + (q[b] + q[a + b]);
 }
+/// Mean of q over the 4 points {0, a} x {0, b}.
 EULASTIC_INLINE double average4(const double *q, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
   return 0.25 * sum4(q, a, b);
 }
@@ -24,7 +25,7 @@ EULASTIC_INLINE double average8(const double *q, std::ptrdiff_t a, std::ptrdiff_
   return 0.125 * (((q[0] + q[a]) + (q[b] + q[a + b])) + ((q[c] + q[c + a]) + (q[c + b] + q[c + a + b])));
 }
 
-/// Sum over the 3^d points around q[0], the same to the bit of mirrored ones.
+/// Sum over the 3^d points around q[0], with the same bits for mirrored points.
 template <int Dim>
 EULASTIC_INLINE double sum_around(const double *q, const std::ptrdiff_t *s) noexcept {
   const auto along_x = [&](std::ptrdiff_t o) EULASTIC_BODY { return (q[o - s[0]] + q[o + s[0]]) + q[o]; };
@@ -34,8 +35,8 @@ EULASTIC_INLINE double sum_around(const double *q, const std::ptrdiff_t *s) noex
   return (along_y(-s[2]) + along_y(s[2])) + along_y(0);
 }
 
-/// Face velocity component `d` at the points of a field staggered as `at`, into the slots of `out`.
-/// Along each direction where the two locations differ the two neighbours are averaged: towards +d from faces to
+/// Averages face velocity component `d` to the points of a field staggered as `at`, and writes it to the slots of
+/// `out`. Along each direction in which the positions differ the two neighbours are averaged: towards +d from faces to
 /// points that are not staggered in d, towards -e from centres to points that are staggered in e.
 template <class Points>
 EULASTIC_INLINE void carry_velocity(const Points &points, ConstView face, int d, const bool *at, int dimension,

@@ -1,18 +1,19 @@
-// One stage of RKL2 in increments, updated in place: three reads, one write.
+// One stage of RKL2 in increments, updated in place with three reads and one write (docs/method.md, section 5).
 #pragma once
 
 #include "kernels/momentum.hpp"
 
 namespace eulastic::kernels {
 
-/// W_j = mu W_j-1 + nu W_j-2 + mu~ dt (viscosity L W_j-1 + c_j-1 dt M_1) + (mu~ + gamma~) dt M_0.
+/// Coefficients of W_j = mu W_j-1 + nu W_j-2 + mu~ dt (viscosity L W_j-1 + c_j-1 dt M_1) + (mu~ + gamma~) dt M_0.
 struct RklStage {
-  double mu, nu, viscous, rate, slope;  ///< mu~ dt viscosity, (mu~ + gamma~) dt, mu~ dt c_j-1 dt
+  double mu, nu, viscous, rate, slope;  ///< the last three: mu~ dt viscosity, (mu~ + gamma~) dt, mu~ dt c_j-1 dt
 };
 
 inline constexpr double rkl_stage_flops_2d = 12, rkl_stage_flops_3d = 16;
 
-/// `before` holds W_j-2 and gets W_j. M_1 = slope is read if WithSlope. force(i): L W_j-1 at offset i of the row.
+/// Replaces W_j-2 in `before` by W_j. M_1 = slope is read if WithSlope. force(i) returns L W_j-1 at offset i of the
+/// row.
 template <bool WithSlope, class Force>
 EULASTIC_INLINE void rkl_stage(const Segment &s, RklStage c, ConstView now, ConstView rate, ConstView slope,
                                const Force &force, View before) noexcept {
@@ -23,12 +24,12 @@ EULASTIC_INLINE void rkl_stage(const Segment &s, RklStage c, ConstView now, Cons
     double sum = c.nu * out[i];
     sum = fma(c.mu, w[i], sum);
     sum = fma(c.rate, m[i], sum);
-    sum = WithSlope ? fma(c.slope, m1[i], sum) : sum + 0.0;  // a slope of 0: the same bits, -0 too
+    sum = WithSlope ? fma(c.slope, m1[i], sum) : sum + 0.0;  // + 0.0 gives the bits of a slope of 0, also for -0
     out[i] = fma(c.viscous, force(i), sum);
   }
 }
 
-/// The force of constant viscosity.
+/// The viscous force at constant viscosity.
 template <int Dim>
 struct RowLaplacian {
   const double *w;

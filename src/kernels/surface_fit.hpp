@@ -1,4 +1,4 @@
-// Values at scattered points of a surface as a quadratic over its tangent plane, by weighted least squares;
+// Fits values at scattered points of a surface by a quadratic over its tangent plane, with weighted least squares;
 // docs/method.md, section 18.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace eulastic::kernels {
 
-/// Points around one of a surface, up to `most`, side by side in groups of eight: the last one is filled with the
-/// weight 0. u, v: along the plane; in 2-D v is not used.
+/// Up to `most` points around a point of a surface, in groups of eight; the last group is padded with points of weight
+/// 0. u, v: coordinates in the plane; 2-D does not use v.
 template <int Values>
 struct SurfacePoints {
   static constexpr int most = 128, lanes = 8;
@@ -21,26 +21,27 @@ struct SurfacePoints {
   }
 };
 
-/// Of each value: its coefficients 1, u, (v,) u^2, (u v, v^2).
+/// Coefficients of 1, u, (v,) u^2, (u v, v^2) for each value.
 template <int Dim, int Values>
 struct SurfaceFit {
   static constexpr int terms = Dim == 3 ? 6 : 3, pairs = terms * (terms + 1) / 2;
   double coefficient[terms][Values];
-  double residual;  ///< weighted mean square of what is left of the first Dim values
+  double residual;  ///< weighted mean square of the deviations of the first Dim values
 };
 
 EULASTIC_INLINE double sum_of_lanes(const double *v) noexcept {
   return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
-/// L L^T = L, the lower half of a symmetric matrix. False where it is as good as singular.
+/// Replaces the lower half of a symmetric matrix by its Cholesky factor. Returns false if the matrix is nearly
+/// singular.
 template <int N>
 EULASTIC_INLINE bool factorise(double (&L)[N][N]) noexcept {
-  constexpr double least = 1e-4;  // of a pivot, of what it was
+  constexpr double least = 1e-4;  // the smallest pivot relative to its diagonal element
   for (int c = 0; c < N; ++c) {
-    const double whole = L[c][c];
+    const double diagonal = L[c][c];
     for (int k = 0; k < c; ++k) L[c][c] -= L[c][k] * L[c][k];
-    if (!(L[c][c] > least * whole)) return false;
+    if (!(L[c][c] > least * diagonal)) return false;
     L[c][c] = __builtin_sqrt(L[c][c]);
     for (int r = c + 1; r < N; ++r) {
       for (int k = 0; k < c; ++k) L[r][c] -= L[r][k] * L[c][k];
@@ -50,7 +51,7 @@ EULASTIC_INLINE bool factorise(double (&L)[N][N]) noexcept {
   return true;
 }
 
-/// Column q of x becomes the solution of L L^T x = itself.
+/// Replaces column q of x by the solution of L L^T y = x.
 template <int N, int Values>
 EULASTIC_INLINE void solve_column(const double (&L)[N][N], int q, double (&x)[N][Values]) noexcept {
   for (int r = 0; r < N; ++r) {
@@ -63,7 +64,7 @@ EULASTIC_INLINE void solve_column(const double (&L)[N][N], int q, double (&x)[N]
   }
 }
 
-/// Of points that are filled up. False, and nothing of use, where they do not determine it.
+/// Fits points after fill_up(). Returns false, with unusable coefficients, where the points do not determine the fit.
 template <int Dim, int Values>
 EULASTIC_INLINE bool fit_surface(const SurfacePoints<Values> &p, SurfaceFit<Dim, Values> *fit) noexcept {
   using Fit = SurfaceFit<Dim, Values>;
@@ -107,16 +108,16 @@ EULASTIC_INLINE bool fit_surface(const SurfacePoints<Values> &p, SurfaceFit<Dim,
   }
   const double weight = L[0][0];
   if (!factorise(L)) return false;
-  double left = sum_of_lanes(squares);
+  double remainder = sum_of_lanes(squares);
   for (int q = 0; q < Values; ++q) {
     solve_column(L, q, fit->coefficient);
-    for (int r = 0; q < Dim && r < terms; ++r) left -= right[r][q] * fit->coefficient[r][q];
+    for (int r = 0; q < Dim && r < terms; ++r) remainder -= right[r][q] * fit->coefficient[r][q];
   }
-  fit->residual = left > 0 ? left / weight : 0;
+  fit->residual = remainder > 0 ? remainder / weight : 0;
   return true;
 }
 
-/// Unit vectors along the surface normal to n; in 2-D one.
+/// Returns the unit vectors along the surface normal to n; one in 2-D.
 template <int Dim>
 EULASTIC_INLINE std::array<Vector<Dim>, Dim - 1> tangents(const Vector<Dim> &n) noexcept {
   if constexpr (Dim == 2) {
@@ -135,7 +136,7 @@ EULASTIC_INLINE std::array<Vector<Dim>, Dim - 1> tangents(const Vector<Dim> &n) 
   }
 }
 
-/// The tensor along the plane of t whose components there are the inverse of G.
+/// Returns the tensor in the plane of t whose components along t are the inverse of G.
 template <int Dim>
 EULASTIC_INLINE Tensor<Dim> inverse_in_plane(const std::array<Vector<Dim>, Dim - 1> &t,
                                              const double (&G)[Dim - 1][Dim - 1]) noexcept {
@@ -154,9 +155,9 @@ EULASTIC_INLINE Tensor<Dim> inverse_in_plane(const std::array<Vector<Dim>, Dim -
   return out;
 }
 
-/// Weight of a point r cells away among the four next to a place along a direction, whose value they give: with a
-/// continuous slope, exactly of what is quadratic (Keys, IEEE Trans. Acoust. Speech Signal Process. 29, 1981, a =
-/// -1/2).
+/// Returns the weight of a point r cells away in the interpolation from the four points next to a position along a
+/// direction, with a continuous slope and exact for quadratic functions (Keys, IEEE Trans. Acoust. Speech Signal
+/// Process. 29, 1981, a = -1/2).
 EULASTIC_INLINE double keys4(double r) noexcept {
   const double a = __builtin_fabs(r);
   if (a < 1) return fma(fma(1.5, a, -2.5), a * a, 1);

@@ -1,26 +1,26 @@
-// The part of the viscous stress that strain along a surface makes in cells that it cuts, beside harmonic means:
-// docs/method.md, (29a).
+// The additional viscous stress of strain along a surface in cells that it cuts, relative to harmonic means of the
+// viscosity; docs/method.md, (29a).
 #pragma once
 
 #include "kernels/tensor.hpp"
 
 namespace eulastic::kernels {
 
-/// Around centres: velocity on faces, strides and inverse spacings of the directions, excess of the viscosity and unit
-/// normal of the surface; 2-D: nothing of z. Differences along a are compact, across it over two cells: means of the
-/// four edges.
+/// Data around centres: velocity on faces, strides and inverse spacings of the directions, excess of the viscosity and
+/// unit normal of the surface. 2-D does not use z. Differences along a direction are compact; those across it span two
+/// cells, the mean of the four edges.
 template <int Dim>
 struct TangentialStress {
   const double *u, *v, *w, *excess, *nx, *ny, *nz;
   std::ptrdiff_t x, y, z;
   double ix, iy, iz;
 
-  /// A symmetric tensor; 2-D: nothing of z.
+  /// A symmetric tensor; 2-D does not use components of z.
   struct Rate {
     double xx, yy, zz, yz, xz, xy;
   };
 
-  /// Twice the rate of strain of the centre at offset i, its deviator, without shear between normal and tangents.
+  /// Returns twice the deviatoric strain rate at the centre at offset i, without shear between normal and tangents.
   EULASTIC_BODY Rate rate(std::ptrdiff_t i) const noexcept {
     Rate D{2 * ix * (u[i + x] - u[i]),
            2 * iy * (v[i + y] - v[i]),
@@ -39,7 +39,7 @@ struct TangentialStress {
     D.xx -= third;
     D.yy -= third;
     D.zz -= third;
-    const double a = nx[i], b = ny[i], c = Dim == 3 ? nz[i] : 0;  // the normal; p, q, r: D times it
+    const double a = nx[i], b = ny[i], c = Dim == 3 ? nz[i] : 0;  // the normal; p, q, r: D n
     double p = fma(D.xy, b, D.xx * a), q = fma(D.yy, b, D.xy * a), r = 0;
     if constexpr (Dim == 3) {
       p = fma(D.xz, c, p);
@@ -61,14 +61,14 @@ struct TangentialStress {
   }
 
 private:
-  // Half the difference over two cells along b of a component of the velocity along a.
+  // Half the difference over two cells along b of the velocity component along a.
   EULASTIC_BODY static double across(const double *v, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
     return 0.25 * ((v[b] + v[a + b]) - (v[-b] + v[a - b]));
   }
 };
 
-/// Component a of the divergence of a symmetric tensor at centres, at the face at offset i; b, c: the other directions.
-/// The adjoint of the differences above.
+/// Component a of the divergence of a symmetric tensor at centres, at the face at offset i; b and c are the other
+/// directions. It is the adjoint of the differences of TangentialStress.
 template <int Dim>
 struct DivergenceFromCentres {
   const double *aa, *ab, *ac;

@@ -1,4 +1,4 @@
-// The stretching terms L.B + B.L^T of (5), on centres for the diagonal and on edges for the off-diagonal components.
+// The stretching terms L.B + B.L^T of (5), at centres for the diagonal and on edges for the other components.
 #pragma once
 
 #include "kernels/solid_shear.hpp"
@@ -8,15 +8,16 @@ namespace eulastic::kernels {
 inline constexpr double stretch_diagonal_flops_2d = 20, stretch_diagonal_flops_3d = 37;
 inline constexpr double stretch_shear_flops_2d = 27, stretch_shear_flops_3d = 58;
 
-/// Mean over the four edges around a centre of B_ab times `slope` (times h) of edges at offsets from it: the product
-/// first, then the average, so that the power taken from the momentum equation is the power the elastic energy gains.
+/// Returns the mean over the four edges around a centre of B_ab times `slope` (a derivative times h) of the edges at
+/// offsets from it. The product is formed first, so that the elastic energy gains the power that is taken from the
+/// flow.
 template <class Slope>
 EULASTIC_INLINE double edge_power(const double *ab, std::ptrdiff_t a, std::ptrdiff_t b, Slope slope) noexcept {
   return 0.25 * ((ab[0] * slope(0) + ab[a] * slope(a)) + (ab[b] * slope(b) + ab[a + b] * slope(a + b)));
 }
 
-/// B_aa dv_a/dx_a + avg4(B_ab dv_a/dx_b) + avg4(B_ac dv_a/dx_c), half the rate of B_aa; in 2-D ac is unused. `shear`:
-/// MixtureShear or SolidShear at this point.
+/// Returns B_aa dv_a/dx_a + avg4(B_ab dv_a/dx_b) + avg4(B_ac dv_a/dx_c), half the rate of B_aa; 2-D does not use ac.
+/// `shear`: MixtureShear or SolidShear at this point.
 template <int Dim, class Shear>
 EULASTIC_INLINE double half_diagonal_stretch(const double *aa, const double *ab, const double *ac, const Shear &shear,
                                              const Directions &d) noexcept {
@@ -28,13 +29,13 @@ EULASTIC_INLINE double half_diagonal_stretch(const double *aa, const double *ab,
   return sum;
 }
 
-/// 4 h dv_a/dx_a averaged to the edge ab.
+/// Returns 4 h dv_a/dx_a averaged to the edge ab.
 EULASTIC_INLINE double normal_rate4(const double *va, std::ptrdiff_t a, std::ptrdiff_t b) noexcept {
   return (va[a] - va[-a]) + (va[a - b] - va[-a - b]);
 }
 
-/// B_aa dv_b/dx_a + B_bb dv_a/dx_b + B_ab (dv_a/dx_a + dv_b/dx_b) + B_bc dv_a/dx_c + B_ac dv_b/dx_c, the rate of B_ab,
-/// the last two formed at the vertices below and above the edge; in 2-D bc and ac are unused.
+/// Returns the rate of B_ab, B_aa dv_b/dx_a + B_bb dv_a/dx_b + B_ab (dv_a/dx_a + dv_b/dx_b) + B_bc dv_a/dx_c + B_ac
+/// dv_b/dx_c. The last two terms are formed at the vertices below and above the edge; 2-D does not use bc and ac.
 template <int Dim, class Shear>
 EULASTIC_INLINE double shear_stretch(const double *aa, const double *bb, const double *ab, const double *bc,
                                      const double *ac, const Shear &shear, const Directions &d) noexcept {
@@ -44,7 +45,8 @@ EULASTIC_INLINE double shear_stretch(const double *aa, const double *bb, const d
       fma(0.25 * d.ia, normal_rate4(shear.v[0], d.a, d.b), 0.25 * d.ib * normal_rate4(shear.v[1], d.b, d.a));
   sum = fma(ab[0], rates, sum);
   if constexpr (Dim == 3) {
-    // Times 4 h_c, at the vertex below the edge that lies o above: B_bc averaged along a, the shear along b.
+    // The last two terms times 4 h_c at the vertex at offset o below the edge: B_bc averaged along a, the shear along
+    // b.
     const auto vertex = [&](std::ptrdiff_t o) EULASTIC_BODY {
       const double first =
           (bc[o] + bc[o - d.a]) * (shear.template slope<0, 2>(d, o) + shear.template slope<0, 2>(d, o - d.b));

@@ -11,15 +11,16 @@
 namespace eulastic {
 namespace {
 
-constexpr double negligible = 1e-3;  // of the smoothed fraction and 1 - that
-// Of ghosts: the force takes curvatures one layer further, and these the level.
+constexpr double negligible = 1e-3;  // of the smoothed fraction psi and of 1 - psi
+// Ghost layers: the force needs curvatures in one more layer, and these need the level in a further one.
 constexpr int force_ghosts = 0, curvature_ghosts = 1, level_ghosts = 2, mean_ghosts = 1;
-constexpr double least_radius = 2;  // in cells
+constexpr double least_radius = 2;  // radius of curvature, in cells
 
-struct Local {
+// Strides and inverse spacings of differences, and the largest curvature.
+struct Differences {
   std::ptrdiff_t stride[3];
-  double inverse[3], steepest;
-  Local(const Box &box, ConstView q) {
+  double inverse[3], largest_curvature;
+  Differences(const Box &box, ConstView q) {
     const Real3 &h = box.spacing();
     double longest = 0;
     for (int d = 0; d < 3; ++d) {
@@ -27,7 +28,7 @@ struct Local {
       inverse[d] = 1 / h[d];
       if (d < box.dimension()) longest = std::max(longest, h[d]);
     }
-    steepest = 1 / (least_radius * longest);
+    largest_curvature = 1 / (least_radius * longest);
   }
 };
 
@@ -48,9 +49,9 @@ EULASTIC_CLONES void force_of_row(const ForceRows &rows, std::ptrdiff_t s, doubl
   }
 }
 
-// Whether one of the rows around is not idle.
-bool near_rows(const OccupiedRows &rows, int j, int k, int across, int deep) {
-  for (int m = -deep; m <= deep; ++m)
+// Whether one of the rows up to `across` rows and `layers_z` planes away is not idle.
+bool any_row_near(const OccupiedRows &rows, int j, int k, int across, int layers_z) {
+  for (int m = -layers_z; m <= layers_z; ++m)
     for (int o = -across; o <= across; ++o)
       if (!rows.idle(j + o, k + m)) return true;
   return false;
@@ -58,9 +59,9 @@ bool near_rows(const OccupiedRows &rows, int j, int k, int across, int deep) {
 
 }  // namespace
 
-// Cells of this rank and around it, those behind walls too.
-MembraneBending::Window MembraneBending::around(const Phase &phase, int ghosts) const {
-  Window box;
+// The cells of this rank with `ghosts` layers around them, also behind walls.
+MembraneBending::CellBlock MembraneBending::block_around(const Phase &phase, int ghosts) const {
+  CellBlock box;
   for (int d = 0; d < 3; ++d) {
     const bool alone = phase.rows.inside() && !(d == 0 && place_.box->wraps_x());
     const int near = d < place_.box->dimension() && !alone ? ghosts : 0;
@@ -71,9 +72,9 @@ MembraneBending::Window MembraneBending::around(const Phase &phase, int ghosts) 
 
 template <int Dim>
 void MembraneBending::find_curvature(const Phase &phase, Field &fields) {
-  const Local local(*place_.box, fields[smoothed]);
+  const Differences local(*place_.box, fields[smoothed]);
   const View psi = fields[smoothed];
-  const Window box = around(phase, curvature_ghosts), forced = around(phase, force_ghosts);
+  const CellBlock box = block_around(phase, curvature_ghosts), forced = block_around(phase, force_ghosts);
   cells_.clear();
   for (int k = box.range[2].begin; k < box.range[2].end; ++k)
     for (int j = box.range[1].begin; j < box.range[1].end; ++j) {
@@ -97,7 +98,7 @@ void MembraneBending::find_curvature(const Phase &phase, Field &fields) {
         square += g * g;
       }
       const kernels::Curvatures found =
-          kernels::surface_curvatures<Dim>(level_of + at, local.stride, local.inverse, local.steepest);
+          kernels::surface_curvatures<Dim>(level_of + at, local.stride, local.inverse, local.largest_curvature);
       curvature_of[at] = found.sum;
       delta_of[at] = __builtin_sqrt(square);
       force_of[at] = delta_of[at] * kernels::bending_pressure(found, membrane.spontaneous_curvature);
@@ -105,10 +106,10 @@ void MembraneBending::find_curvature(const Phase &phase, Field &fields) {
   });
 }
 
-// E_b (div(delta P grad kappa) + delta ...), where all faces around are known.
+// Computes E_b (div(delta P grad kappa) + delta ...) in cells whose faces all have a flux; (27).
 template <int Dim>
 void MembraneBending::find_force(const Phase &phase, Field &fields) {
-  const Local local(*place_.box, fields[smoothed]);
+  const Differences local(*place_.box, fields[smoothed]);
   const double *level_of = fields[level].origin, *curvature_of = fields[curvature].origin,
                *delta_of = fields[delta].origin;
   double *force_of = fields[force].origin;
@@ -132,8 +133,8 @@ void MembraneBending::find_force(const Phase &phase, Field &fields) {
   });
 }
 
-// What waves as short as cells make of the curvature is noise that would drive a flow for ever: force and delta are
-// averaged like the fraction that they come from.
+// Averages force and delta like phi, because noise of the curvature at waves as short as cells would drive a flow
+// forever.
 PetscErrorCode MembraneBending::smooth_force(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
   const int far = mean_ghosts + smooth_reach, dim = place_.box->dimension();
@@ -141,14 +142,14 @@ PetscErrorCode MembraneBending::smooth_force(const Phase &phase, Field &fields) 
   PetscCall(place_.exchange_ghosts(both, far, &phase.rows));
   for (const int f : {delta, force}) fill_wall_ghosts_even(*place_.box, at_centre, fields[f], far, &phase.rows);
   const Int3 &n = place_.box->cells();
-  const int deep = dim == 3 ? mean_ghosts : 0, rows = n[1] + 2 * mean_ghosts, planes = n[2] + 2 * deep;
+  const int layers_z = dim == 3 ? mean_ghosts : 0, rows = n[1] + 2 * mean_ghosts, planes = n[2] + 2 * layers_z;
   const int parts = row_parts(*place_.box);
   in_parallel(parts, parts, [&](int part) {
     RowScratch scratch(*place_.box, 1);
     const Piece piece(std::size_t(rows) * planes, part, parts);
     for (std::size_t r = piece.begin; r < piece.end; ++r) {
-      const int j = static_cast<int>(r % rows) - mean_ghosts, k = static_cast<int>(r / rows) - deep;
-      if (!near_rows(phase.rows, j, k, 1, deep)) continue;
+      const int j = static_cast<int>(r % rows) - mean_ghosts, k = static_cast<int>(r / rows) - layers_z;
+      if (!any_row_near(phase.rows, j, k, 1, layers_z)) continue;
       for (const auto &[from, to] : {std::pair{force, mean}, {delta, weight}})
         smooth_row(dim, fields[from], j, k, -mean_ghosts, n[0] + mean_ghosts, scratch.row(0), fields[to].row(j, k));
     }
@@ -159,8 +160,8 @@ PetscErrorCode MembraneBending::smooth_force(const Phase &phase, Field &fields) 
 PetscErrorCode MembraneBending::find(const Phase &phase, ConstView smooth, Field &fields) {
   PetscFunctionBeginUser;
   const int dim = place_.box->dimension();
-  const Window box = around(phase, level_ghosts);
-  for (const int f : {delta, force}) clear_around(*place_.box, phase.rows, mean_ghosts + smooth_reach, fields[f]);
+  const CellBlock box = block_around(phase, level_ghosts);
+  for (const int f : {delta, force}) clear_near_rows(*place_.box, phase.rows, mean_ghosts + smooth_reach, fields[f]);
   const int rows = box.range[1].end - box.range[1].begin, planes = box.range[2].end - box.range[2].begin;
   const int parts = row_parts(*place_.box);
   in_parallel(parts, parts, [&](int part) {

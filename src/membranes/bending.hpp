@@ -1,5 +1,5 @@
-// The bending of membranes: force and energy of E_b/2 (kappa - c0)^2 per area, kappa the sum of the principal
-// curvatures, from a solid fraction that is smoothed twice; docs/method.md, section 18.
+// Bending of membranes: force and energy of E_b/2 (kappa - c0)^2 per area, with kappa the sum of the principal
+// curvatures, from phi smoothed twice; docs/method.md, section 18, (27).
 #pragma once
 
 #include "base/petsc.hpp"
@@ -12,18 +12,18 @@ public:
   static constexpr int work_fields = 6;
 
   explicit MembraneBending(const PhasePlace &place) : place_(place) {}
-  /// Curvature and force of a phase into `fields` of the work space. `smooth`: SurfaceCells' fraction, ghosts filled, 0
-  /// around the rows of the phase.
+  /// Computes curvature and force of a phase in `fields` (work_fields components). `smooth`: smoothed phi of
+  /// SurfaceCells with valid ghosts, 0 around the rows of the phase. Collective on the grid.
   PetscErrorCode find(const Phase &phase, ConstView smooth, Field &fields);
-  /// The force along `a` on the owned faces of a row into out[0 .. cells); of the last find().
+  /// Writes the force per volume along `a` on the owned faces of a row to out[0 .. cells), from the last find().
   void force_row(const Field &fields, int a, int j, int k, double *out) const;
-  /// Energy per area at a cell; 0 where no curvature is known.
+  /// Bending energy per area at a cell; 0 where the curvature is not known.
   static double energy(const Material &material, const Field &fields, std::ptrdiff_t at);
 
 private:
-  /// The last two are the means of force and delta around.
+  /// `weight` and `mean` are averages of delta and force.
   enum Scratch { smoothed, curvature, delta, force, level, weight, mean = level };
-  struct Window {
+  struct CellBlock {
     Box::Range range[3];
     bool holds(const Int3 &place) const {
       bool inside = true;
@@ -33,9 +33,9 @@ private:
   };
   struct Cell {
     std::ptrdiff_t at;  ///< offset from the origin
-    bool forced;        ///< owned, or a ghost next to that: what faces feel
+    bool forced;        ///< owned, or a ghost beside an owned cell, whose force acts on owned faces
   };
-  Window around(const Phase &phase, int ghosts) const;
+  CellBlock block_around(const Phase &phase, int ghosts) const;
   template <int Dim>
   void find_curvature(const Phase &phase, Field &fields);
   template <int Dim>
@@ -44,7 +44,7 @@ private:
   PetscErrorCode smooth_force(const Phase &phase, Field &fields);
 
   PhasePlace place_;
-  std::vector<Cell> cells_;  ///< where there is a curvature
+  std::vector<Cell> cells_;  ///< cells with a curvature
 };
 
 }  // namespace eulastic

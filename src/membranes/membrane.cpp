@@ -18,14 +18,14 @@ namespace {
 using kernels::Tensor;
 using kernels::Vector;
 
-constexpr double doubtful = 2;         // ratio of the traces of B_s of markers and grid
-constexpr double area_doubtful = 0.5;  // energy of the area that markers may have more than the grid, in G_s
+constexpr double largest_trace_ratio = 2;    // largest ratio of tr B_s between markers and grid
+constexpr double largest_area_excess = 0.5;  // largest excess of the markers' area energy over that of the grid, in G_s
 
 template <int Dim>
-struct Local {
+struct Differences {
   std::ptrdiff_t stride[3];
   Real3 h, inverse;
-  explicit Local(const Box &box, ConstView q) {
+  explicit Differences(const Box &box, ConstView q) {
     for (int d = 0; d < 3; ++d) {
       stride[d] = q.stride(d);
       h[d] = box.spacing()[d];
@@ -34,9 +34,9 @@ struct Local {
   }
 };
 
-// v and its gradient at the point of the surface nearest to a cell.
+// Velocity and its gradient at the surface point nearest to a cell.
 template <int Dim>
-struct Flow {
+struct SurfaceFlow {
   Vector<Dim> v{};
   Tensor<Dim> L{};
 };
@@ -46,10 +46,11 @@ EULASTIC_INLINE double centre_velocity(const double *v, std::ptrdiff_t s) {
   return 0.5 * (v[0] + v[s]);
 }
 
+// Interpolates velocity and gradient linearly from centres to the surface point at -distance n from a cell.
 template <int Dim>
-EULASTIC_INLINE Flow<Dim> flow_at_surface(const Local<Dim> &local, const Field &velocity, std::ptrdiff_t at,
-                                          const Vector<Dim> &n, double distance) {
-  Flow<Dim> flow;
+EULASTIC_INLINE SurfaceFlow<Dim> flow_at_surface(const Differences<Dim> &local, const Field &velocity,
+                                                 std::ptrdiff_t at, const Vector<Dim> &n, double distance) {
+  SurfaceFlow<Dim> flow;
   std::ptrdiff_t step[Dim];
   double part[Dim];
   for (int d = 0; d < Dim; ++d) {
@@ -81,10 +82,11 @@ EULASTIC_INLINE Flow<Dim> flow_at_surface(const Local<Dim> &local, const Field &
   return flow;
 }
 
-// -v.grad B + L B + B L^T. Linear differences: weights that follow the smoothness of each component, as those of WENO5,
-// would not keep the trace of a mean of planes.
+// Returns -v.grad B + L B + B L^T. The differences are linear: weights that depend on the smoothness of each component,
+// as in WENO5, would not conserve the trace of a mean of tensors in different planes.
 template <int Dim>
-EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const Field &B, std::ptrdiff_t at, const Flow<Dim> &flow) {
+EULASTIC_INLINE Tensor<Dim> rate_of(const Differences<Dim> &local, const Field &B, std::ptrdiff_t at,
+                                    const SurfaceFlow<Dim> &flow) {
   const Tensor<Dim> b = tensor_at<Dim>(B, at);
   Tensor<Dim> rate;
   for (int x = 0; x < Dim; ++x)
@@ -106,7 +108,7 @@ EULASTIC_INLINE Tensor<Dim> rate_of(const Local<Dim> &local, const Field &B, std
 PetscErrorCode MembraneMechanics::find(const Phase &phase, Field &work) {
   PetscFunctionBeginUser;
   surface_fields_ = work.part(0, SurfaceCells::work_fields);
-  others_ = work.part(SurfaceCells::work_fields, work_fields - SurfaceCells::work_fields);
+  scratch_fields_ = work.part(SurfaceCells::work_fields, work_fields - SurfaceCells::work_fields);
   PetscCall(surface_.find(phase, surface_fields_));
   PetscFunctionReturn(0);
 }
@@ -114,8 +116,8 @@ PetscErrorCode MembraneMechanics::find(const Phase &phase, Field &work) {
 PetscErrorCode MembraneMechanics::start(Phase *phase) {
   PetscFunctionBeginUser;
   const double area = phase->material.membrane.initial_area_stretch;
-  const double stretch = place_.box->dimension() == 2 ? area * area : area;  // squared, of lengths
-  for (std::size_t c = 0; c < surface_.nearest(); ++c) {
+  const double stretch = place_.box->dimension() == 2 ? area * area : area;  // squared stretch of lengths
+  for (std::size_t c = 0; c < surface_.nearest_count(); ++c) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) continue;
     const auto set = [&](auto dim) {
@@ -131,17 +133,17 @@ PetscErrorCode MembraneMechanics::start(Phase *phase) {
   PetscFunctionReturn(0);
 }
 
-// First: next = B + dt R(B). Second: B = P (B + next + dt R(next)) P/2. The flow is the same. Areas stay above half of
-// those at the start.
+// Advances B_s by Heun's method with a constant flow. First stage: next = B + dt R(B). Second stage: B = (B + next + dt
+// R(next))/2, turned into the plane of the surface; the area stays above half of that at the start.
 template <int Dim>
 PetscErrorCode MembraneMechanics::heun(double dt, const Field &velocity, Phase *phase, Field &next, long *unresolved) {
   PetscFunctionBeginUser;
   const double least = least_area_squared(*phase);
-  std::vector<long> kept(row_parts(*place_.box));
-  const Local<Dim> local(*place_.box, velocity[0]);
-  std::vector<Flow<Dim>> flows(surface_.nearest());
+  std::vector<long> lost_cells(row_parts(*place_.box));
+  const Differences<Dim> local(*place_.box, velocity[0]);
+  std::vector<SurfaceFlow<Dim>> flows(surface_.nearest_count());
   Field &tensor = phase->tensor.field;
-  const auto stage = [&](bool second, std::size_t c, long *lost) {
+  const auto stage = [&](bool second, std::size_t c, long *lost_count) {
     const SurfaceCells::Cell &cell = surface_.all()[c];
     if (!cell.owned) return;
     const Vector<Dim> n = normal_of<Dim>(cell.normal);
@@ -156,7 +158,7 @@ PetscErrorCode MembraneMechanics::heun(double dt, const Field &velocity, Phase *
       for (int a = 0; a < Dim; ++a)
         for (int b = 0; b < Dim; ++b) value[a][b] = 0.5 * (old[a][b] + value[a][b]);
       value = kernels::project_surface<Dim>(value, n);
-      *lost += kernels::keep_area<Dim>(n, least, &value);
+      *lost_count += kernels::keep_area<Dim>(n, least, &value);
     }
     set_tensor<Dim>(second ? tensor : next, cell.at, value);
   };
@@ -165,14 +167,14 @@ PetscErrorCode MembraneMechanics::heun(double dt, const Field &velocity, Phase *
     {
       VerbScope scope(Verb::membrane);
       in_parallel(parts, parts, [&](int part) {
-        const Piece piece(surface_.nearest(), part, parts);
-        for (std::size_t c = piece.begin; c < piece.end; ++c) stage(second, c, &kept[part]);
+        const Piece piece(surface_.nearest_count(), part, parts);
+        for (std::size_t c = piece.begin; c < piece.end; ++c) stage(second, c, &lost_cells[part]);
       });
-      scope.flops(double(surface_.nearest()) * (Dim == 2 ? 250 : 1300));
+      scope.flops(double(surface_.nearest_count()) * (Dim == 2 ? 250 : 1300));
     }
     if (!second) PetscCall(surface_.extend(*phase, next));
   }
-  *unresolved = std::accumulate(kept.begin(), kept.end(), *unresolved);
+  *unresolved = std::accumulate(lost_cells.begin(), lost_cells.end(), *unresolved);
   PetscFunctionReturn(0);
 }
 
@@ -181,12 +183,12 @@ double MembraneMechanics::least_area_squared(const Phase &phase) {
   return 0.25 * std::min(1.0, stretch * stretch);
 }
 
-// The strain of the grid comes nearer to that of the markers with every cell that the surface passes, as what fades
-// does; within a cell it is that of the grid, whose force and surface fit each other. It fades slowly: markers that
-// tell of something else altogether lie where a quadratic is not determined, or have been carried by a flow that the
-// grid does not resolve, as at an edge that is pressed to a wall.
-void MembraneMechanics::recall(const std::vector<SurfaceMarkers::Strain> &strains, const Field &velocity, double dt,
-                               Phase *phase, long *unresolved) {
+// Relaxes B_s of the grid to that of the markers, once per cell that the surface passes, which is faster than its
+// numerical decay. Over shorter distances B_s stays consistent with force and surface of the grid. Because the decay is
+// slow, a large difference means that the markers do not determine a quadratic or were carried by an unresolved flow,
+// as at an edge pressed to a wall; such strains are not used.
+void MembraneMechanics::relax_to_markers(const std::vector<SurfaceMarkers::Strain> &strains, const Field &velocity,
+                                         double dt, Phase *phase, long *unresolved) {
   const double least = least_area_squared(*phase);
   const auto each = [&](auto dim) {
     for (const SurfaceMarkers::Strain &strain : strains) {
@@ -195,12 +197,14 @@ void MembraneMechanics::recall(const std::vector<SurfaceMarkers::Strain> &strain
       Tensor<dim> found;
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b) found[a][b] = strain.B[kernels::position<dim>(a, b)];
-      const kernels::SurfaceStrain told = kernels::surface_strain<dim>(found);
-      const kernels::SurfaceStrain known = kernels::surface_strain<dim>(tensor_at<dim>(tensor, cell.at));
+      const kernels::SurfaceStrain from_markers = kernels::surface_strain<dim>(found);
+      const kernels::SurfaceStrain on_grid = kernels::surface_strain<dim>(tensor_at<dim>(tensor, cell.at));
       const kernels::Membrane &law = phase->material.membrane;
-      const double more = kernels::area_energy(law, told) - kernels::area_energy(law, known);
-      if (!(told.trace < doubtful * known.trace && known.trace < doubtful * told.trace)) continue;
-      if (!(more < area_doubtful * law.shear_modulus)) continue;
+      const double excess = kernels::area_energy(law, from_markers) - kernels::area_energy(law, on_grid);
+      if (!(from_markers.trace < largest_trace_ratio * on_grid.trace &&
+            on_grid.trace < largest_trace_ratio * from_markers.trace))
+        continue;
+      if (!(excess < largest_area_excess * law.shear_modulus)) continue;
       double passed = 0;
       for (int d = 0; d < dim; ++d)
         passed += __builtin_fabs(centre_velocity<dim>(velocity[d].origin + cell.at, velocity[d].stride(d))) * dt /
@@ -223,27 +227,27 @@ PetscErrorCode MembraneMechanics::move(double dt, const Field &velocity,
                                        const std::vector<SurfaceMarkers::Strain> &strains, Phase *phase,
                                        long *unresolved) {
   PetscFunctionBeginUser;
-  Field next = others_.part(0, phase->tensor.field.count());
+  Field next = scratch_fields_.part(0, phase->tensor.field.count());
   if (place_.box->dimension() == 2)
     PetscCall(heun<2>(dt, velocity, phase, next, unresolved));
   else
     PetscCall(heun<3>(dt, velocity, phase, next, unresolved));
-  recall(strains, velocity, dt, phase, unresolved);
+  relax_to_markers(strains, velocity, dt, phase, unresolved);
   PetscCall(extend(phase));
   PetscFunctionReturn(0);
 }
 
-// The force of membranes on the flow.
+// Force of membranes on the flow.
 
 namespace {
 
-// Half way between q[-s] and q[0], of fourth order.
+// Interpolates to the middle between q[-s] and q[0], to fourth order.
 EULASTIC_INLINE double between(const double *q, std::ptrdiff_t s) noexcept {
   return (9. / 16) * (q[-s] + q[0]) - (1. / 16) * (q[-2 * s] + q[s]);
 }
 
-// div T on faces of component a, of a row. Within the few cells of delta the terms have to cancel where the surface is
-// flat and its tension uniform, in whatever direction.
+// Computes div T on the faces of component a in a row. Within the few cells of delta the terms must cancel where the
+// surface is flat and the tension uniform, for any direction of the surface.
 template <int Dim>
 EULASTIC_INLINE void divergence_row(const Field &T, int a, const Real3 &inverse, int n, int j, int k, double *out) {
   const ConstView q = T[a];
@@ -271,17 +275,18 @@ EULASTIC_CLONES void divergence_3d(const Field &T, int a, const Real3 &inverse, 
   divergence_row<3>(T, a, inverse, n, j, k, out);
 }
 
-// Of these differences: the stress lives in three cells around a body, and rows that are not idle reach five.
+// Ghost layers that these differences read. The stress differs from 0 within three cells around a body, occupied rows
+// extend five.
 constexpr int force_reach = 2;
 
 }  // namespace
 
-// delta tau at centres, with the ghosts that the force takes; 0 elsewhere on rows that feel it.
+// Computes delta tau at centres, with the ghosts that the force reads; 0 elsewhere in rows that the force reaches.
 PetscErrorCode MembraneMechanics::find_stress(const Phase &phase, Field &stress) {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::membrane);
   const int dim = place_.box->dimension();
-  for (int f = 0; f < stress.count(); ++f) clear_around(*place_.box, phase.rows, force_reach, stress[f]);
+  for (int f = 0; f < stress.count(); ++f) clear_near_rows(*place_.box, phase.rows, force_reach, stress[f]);
   const auto set = [&](const SurfaceCells::Cell &cell, auto zero, auto P) {
     auto B = zero;
     const kernels::MembraneState state = kernels::membrane_state(
@@ -307,7 +312,7 @@ PetscErrorCode MembraneMechanics::find_stress(const Phase &phase, Field &stress)
   PetscFunctionReturn(0);
 }
 
-// That of the stress, then that of bending.
+// Calls `use` with the force of the stress, then with that of bending.
 PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const ForceRow &use,
                                                  std::vector<double> *bending_energy) {
   PetscFunctionBeginUser;
@@ -317,7 +322,7 @@ PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const Force
   if (bending_energy) bending_energy->assign(surface_.all().size(), 0);
   for (const bool bending : {false, true}) {
     if (bending && !(phase.material.membrane.bending_modulus > 0)) continue;
-    Field fields = others_.part(0, bending ? MembraneBending::work_fields : phase.tensor.field.count());
+    Field fields = scratch_fields_.part(0, bending ? MembraneBending::work_fields : phase.tensor.field.count());
     if (bending)
       PetscCall(bending_.find(phase, smooth(), fields));
     else
@@ -350,10 +355,10 @@ PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const Force
 
 namespace {
 
-// Per volume of a cell.
+// Energies per volume of a cell.
 struct Energies {
   double shear, area;
-  double rest, stretch;  ///< of SurfaceSample
+  double rest, stretch;  ///< members `rest` and `stretch` of SurfaceSample
   double total() const { return shear + area; }
 };
 template <int Dim>
@@ -364,8 +369,8 @@ Energies energies_at(const Phase &phase, const SurfaceCells::Cell &cell) {
   return {weight * (state.energy - area), weight * area, weight, kernels::larger_stretch(strain)};
 }
 
-// Of the surface that curvatures are those of: a filter moves both, and what it does to the area makes up for the
-// curvature.
+// Delta of the smoothed surface, whose curvatures are used: smoothing moves the surface, and its smaller area
+// compensates the larger curvature.
 double smoothed_delta(const Box &box, ConstView psi, std::ptrdiff_t at) {
   const double *p = psi.origin + at;
   Real3 g{};

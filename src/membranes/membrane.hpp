@@ -1,5 +1,5 @@
-// The elastic membranes of one phase, on the grid or in a box of their own: their deformation B_s, which lives in a few
-// cells around the surface of a body, and their force on the flow; docs/method.md, section 18.
+// Elastic membranes of one phase, on the grid or in a box of its own: their deformation B_s in a few cells around the
+// surface of a body, and their force on the flow; docs/method.md, section 18.
 #pragma once
 
 #include "base/exact_sum.hpp"
@@ -17,58 +17,59 @@ namespace eulastic {
 
 class MembraneMechanics {
 public:
-  /// Ghosts of the velocity that move() reads.
+  /// Ghost layers of the velocity that move() reads.
   static constexpr int velocity_ghosts = SurfaceMarkers::velocity_ghosts;
-  /// Scratch fields.
+  /// Number of fields in `work`.
   static constexpr int work_fields = SurfaceCells::work_fields + 6;
-  /// How many cells away from its phi a phase exerts forces, and what these are found from lies.
+  /// Distance in cells from phi of a phase within which its forces act and their input is stored.
   static constexpr int reach = around_membranes.reach;
 
-  /// What `place` points to must outlive this.
+  /// The objects in `place` must outlive this.
   explicit MembraneMechanics(const PhasePlace &place) : place_(place), surface_(place), bending_(place) {}
 
-  /// Finds the surface of a phase, five ghosts of phi. All that follows is of that phase and uses `work`, work_fields
-  /// fields, until the next find(). Collective on the grid, as all of these.
+  /// Finds the surface of a phase from phi with five ghosts. All later calls refer to this phase and use `work`,
+  /// work_fields components, until the next find(). Collective on the grid, like all functions below.
   PetscErrorCode find(const Phase &phase, Field &work);
   const SurfaceCells &surface() const { return surface_; }
-  /// As SurfaceCells leaves them.
+  /// The fields as SurfaceCells::find() left them.
   const Field &surface_fields() const { return surface_fields_; }
-  /// B_s from B = F F^T of the bodies, given in cells with phi > 0 (1: undeformed), times initial_area_stretch.
+  /// Sets B_s from B = F F^T of the bodies, which is given in cells with phi > 0 (I: undeformed), and stretches its
+  /// area by initial_area_stretch.
   PetscErrorCode start(Phase *phase);
   /// Fills layers and ghosts from the cells where B_s evolves.
   PetscErrorCode extend(Phase *phase) { return surface_.extend(*phase, phase->tensor.field); }
-  /// B_s over dt with the flow; phi has moved. Leaves layers and ghosts filled. Adds to `unresolved` the cells of this
-  /// rank in which the area would have fallen below half of that at the start: strain is lost there. `strains`: what
-  /// markers tell.
+  /// Advances B_s over dt with the flow, after phi has moved, and fills layers and ghosts. `strains`: strains from
+  /// markers. Adds to `unresolved` the number of cells of this rank where the area would have fallen below half of that
+  /// at the start; strain is lost there.
   PetscErrorCode move(double dt, const Field &velocity, const std::vector<SurfaceMarkers::Strain> &strains,
                       Phase *phase, long *unresolved);
-  /// Called with the part of the rows, whether it is the force of bending, component, j, k and the force per volume on
-  /// the owned faces of the row, which it may spoil.
+  /// Receives the number of the row part, whether the force is that of bending, component, j, k, and the force per
+  /// volume on the owned faces of the row, which it may overwrite.
   using ForceRow = std::function<void(int, bool, int, int, int, double *)>;
-  /// Forces of the stress and of bending. `bending_energy`: per area at each cell of surface().
+  /// Calls `use` for the forces of stress and bending. `bending_energy`: energy per area at each cell of surface().
   PetscErrorCode for_force_rows(const Phase &phase, const ForceRow &use, std::vector<double> *bending_energy = nullptr);
   enum Sum { power, stored, sums };
-  /// Adds the power that the flow gives to the phase and the energy stored in it, both over the volume of a cell, to
-  /// sums of every part of the rows; `samples`: of all owned cells at surfaces, if it is not null and bodies have
-  /// labels or `label` is that of the only one.
+  /// Adds the power that the flow supplies to the phase and the stored energy, both divided by the cell volume, to the
+  /// sums of each row part. Adds samples of all owned surface cells to `samples`, unless it is null, if bodies have
+  /// labels or `label` is that of the only body.
   PetscErrorCode measure(const Phase &phase, const Field &velocity, const WallFilm &film, int label,
                          std::vector<ExactSums> *sum, std::vector<SurfaceSample> *samples);
 
 private:
-  /// delta tau at centres, of the cells in surface_.
+  /// Computes delta tau at centres, from the cells of surface_.
   PetscErrorCode find_stress(const Phase &phase, Field &stress);
-  /// Leaves the layers to the caller.
+  /// Does not fill the layers of the second stage.
   template <int Dim>
   PetscErrorCode heun(double dt, const Field &velocity, Phase *phase, Field &next, long *unresolved);
-  void recall(const std::vector<SurfaceMarkers::Strain> &strains, const Field &velocity, double dt, Phase *phase,
-              long *unresolved);
+  void relax_to_markers(const std::vector<SurfaceMarkers::Strain> &strains, const Field &velocity, double dt,
+                        Phase *phase, long *unresolved);
   static double least_area_squared(const Phase &phase);
   ConstView smooth() const { return surface_fields_[SurfaceCells::smoothed]; }
 
   PhasePlace place_;
   SurfaceCells surface_;
   MembraneBending bending_;
-  Field surface_fields_, others_;  ///< parts of the work fields
+  Field surface_fields_, scratch_fields_;  ///< parts of the fields in `work`
 };
 
 }  // namespace eulastic

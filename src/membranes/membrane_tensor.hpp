@@ -1,4 +1,4 @@
-// B_s of one cell out of its block, and back.
+// Access to the tensor B_s of one cell.
 #pragma once
 
 #include "field/field.hpp"

@@ -21,7 +21,7 @@ bool MembraneTransport::exists(const std::vector<Phase> &phases) {
   return std::any_of(phases.begin(), phases.end(), is_on_grid);
 }
 
-bool MembraneTransport::marks() const {
+bool MembraneTransport::has_any_markers() const {
   return std::any_of(flow_.now.phases.begin(), flow_.now.phases.end(), has_markers);
 }
 
@@ -80,9 +80,9 @@ PetscErrorCode MembraneTransport::move(double dt, std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
   PetscCall(flow_.update_velocity_ghosts(now.velocity, now.time, MembraneMechanics::velocity_ghosts));
   long unresolved = 0, all = 0;
-  NetForce net(flow_.domain, of_state && drives_all(*phases));
-  if (of_state) begin_force();
-  if (of_state && marks()) PetscCall(markers_.move(dt, now.velocity, &now.markers));
+  NetForce net(flow_.domain, of_state && accelerates_all(*phases));
+  if (of_state) clear_force();
+  if (of_state && has_any_markers()) PetscCall(markers_.move(dt, now.velocity, &now.markers));
   for (std::size_t p = 0; p < phases->size(); ++p) {
     Phase &phase = (*phases)[p];
     if (!is_on_grid(phase)) continue;
@@ -93,10 +93,10 @@ PetscErrorCode MembraneTransport::move(double dt, std::vector<Phase> *phases) {
     if (marked) markers_.find_strain(membrane_.surface(), static_cast<int>(p), &strains);
     PetscCall(membrane_.move(dt, now.velocity, strains, &phase, &unresolved));
     if (marked) markers_.settle(membrane_.surface(), membrane_.surface_fields(), static_cast<int>(p), &now.markers);
-    if (of_state) PetscCall(gather_force(phase, &net));
+    if (of_state) PetscCall(add_phase_force(phase, &net));
   }
   if (!of_state) PetscFunctionReturn(0);
-  PetscCall(end_force(&net));
+  PetscCall(finish_force(&net));
   PetscCallMPI(MPI_Allreduce(&unresolved, &all, 1, MPI_LONG, MPI_SUM, flow_.domain.comm()));
   now.forgotten += all;
   PetscFunctionReturn(0);
@@ -114,7 +114,7 @@ PetscErrorCode MembraneTransport::place_markers() {
 PetscErrorCode MembraneTransport::set_markers(const std::vector<SurfaceMarker> &markers) {
   PetscFunctionBeginUser;
   flow_.now.markers = markers;
-  if (marks()) PetscCall(markers_.send_home(&flow_.now.markers));
+  if (has_any_markers()) PetscCall(markers_.send_to_owners(&flow_.now.markers));
   PetscFunctionReturn(0);
 }
 
@@ -125,31 +125,31 @@ PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, 
   WorkSpace::Lease work;
   PetscCall(find(phase, &work));
   markers_.place(membrane_.surface(), membrane_.surface_fields(), phase, number, label, markers);
-  PetscCall(markers_.send_home(markers));  // the surface beside a rank's last cell may lie in the next one
+  PetscCall(markers_.send_to_owners(markers));  // the surface beside a rank's last cell may be in the next rank
   PetscFunctionReturn(0);
 }
 
-// Each marker to the phase that its body is in now; those of bodies that are gone away.
+// Assigns each marker to the present phase of its body and removes those of bodies that have left.
 PetscErrorCode MembraneTransport::follow() {
   std::vector<Phase> &phases = flow_.now.phases;
   std::vector<WantedGhosts> labels;
   PetscFunctionBeginUser;
-  if (!marks()) PetscFunctionReturn(0);
+  if (!has_any_markers()) PetscFunctionReturn(0);
   for (Phase &phase : phases)
     if (is_on_grid(phase) && phase.label) labels.push_back({&phase.label, 1, &phase.rows});
   if (labels.empty()) PetscFunctionReturn(0);
   PetscCall(flow_.exchange.update_ghosts(labels));
-  markers_.follow(phases, &flow_.now.markers);
+  markers_.update_phases(phases, &flow_.now.markers);
   PetscFunctionReturn(0);
 }
 
-bool MembraneTransport::drives_all(const std::vector<Phase> &phases) const {
+bool MembraneTransport::accelerates_all(const std::vector<Phase> &phases) const {
   return flow_.drifts() && std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
            return is_on_grid(phase) && phase.material.membrane.bending_modulus > 0;
          });
 }
 
-void MembraneTransport::begin_force() {
+void MembraneTransport::clear_force() {
   const int n = flow_.domain.cells()[0];
   in_row_parts(flow_.domain, [&](const RowPart &part) {
     for (int k = part.k_begin; k < part.k_end; ++k)
@@ -158,7 +158,7 @@ void MembraneTransport::begin_force() {
   });
 }
 
-PetscErrorCode MembraneTransport::gather_force(const Phase &phase, NetForce *net) {
+PetscErrorCode MembraneTransport::add_phase_force(const Phase &phase, NetForce *net) {
   PetscFunctionBeginUser;
   const int n = flow_.domain.cells()[0];
   PetscCall(membrane_.for_force_rows(phase, [&](int part, bool bending, int a, int j, int k, const double *added) {
@@ -169,7 +169,7 @@ PetscErrorCode MembraneTransport::gather_force(const Phase &phase, NetForce *net
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::end_force(NetForce *net) {
+PetscErrorCode MembraneTransport::finish_force(NetForce *net) {
   PetscFunctionBeginUser;
   PetscCall(net->find_mean(&net_force_));
   force_known_ = true;
@@ -188,15 +188,15 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
                                             const WeightedTarget &slope) {
   PetscFunctionBeginUser;
   if (!force_known_) {
-    NetForce net(flow_.domain, drives_all(phases));
-    begin_force();
+    NetForce net(flow_.domain, accelerates_all(phases));
+    clear_force();
     for (const Phase &phase : phases) {
       if (!is_on_grid(phase)) continue;
       WorkSpace::Lease work;
       PetscCall(find(phase, &work));
-      PetscCall(gather_force(phase, &net));
+      PetscCall(add_phase_force(phase, &net));
     }
-    PetscCall(end_force(&net));
+    PetscCall(finish_force(&net));
   }
   const int n = flow_.domain.cells()[0];
   in_row_parts(flow_.domain, [&](const RowPart &part) {
@@ -204,8 +204,8 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
     double *added = scratch.row(0);
     for (int k = part.k_begin; k < part.k_end; ++k)
       for (int j = part.j_begin; j < part.j_end; ++j) {
-        const auto felt = [&](const Phase &phase) { return is_on_grid(phase) && !phase.rows.idle(j, k); };
-        if (std::none_of(phases.begin(), phases.end(), felt)) continue;
+        const auto has_force = [&](const Phase &phase) { return is_on_grid(phase) && !phase.rows.idle(j, k); };
+        if (std::none_of(phases.begin(), phases.end(), has_force)) continue;
         for (int a = 0; a < force_.count(); ++a) {
           const double *f = force_[a].row(j, k);
           for (int i = 0; i < n; ++i) added[i] = scale * f[i];
@@ -219,11 +219,11 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+PetscErrorCode MembraneTransport::add_surface_energy(const FlowLook &bodies, SurfaceEnergy *measured,
                                                      std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
   const double volume = flow_.domain.cell_volume();
-  for (const Phase &phase : look.phases) {
+  for (const Phase &phase : bodies.phases) {
     if (!is_on_grid(phase)) continue;
     WorkSpace::Lease work;
     PetscCall(find(phase, &work));

@@ -1,4 +1,4 @@
-// Membranes in phases of the grid (membranes/membrane.hpp), all of them together.
+// Membranes of all phases on the grid (membranes/membrane.hpp).
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,7 +11,7 @@ namespace eulastic {
 
 class MembraneTransport final : public FlowPart {
 public:
-  static constexpr int fields = MembraneMechanics::work_fields;  ///< of the work space, during each call
+  static constexpr int fields = MembraneMechanics::work_fields;  ///< components of the work space that each call uses
 
   explicit MembraneTransport(Flow *flow)
       : flow_(*flow),
@@ -22,7 +22,8 @@ public:
   PetscErrorCode resume() override;
   PetscErrorCode settle(Phase *phase) override;
   PetscErrorCode begin_slope(double dt, Field &slope) override;
-  /// B_s; phi has moved. Leaves layers and ghosts filled. Of the state also the markers and the force of add_force().
+  /// Moves B_s, after phi has moved, and fills its layers and ghosts. For the state it also moves the markers and
+  /// computes the force of add_force().
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
   PetscErrorCode follow() override;
@@ -30,42 +31,43 @@ public:
     return place_markers(phase, number, label);
   }
   PetscErrorCode see_bodies_leave() override { return follow(); }
-  PetscErrorCode add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+  PetscErrorCode add_surface_energy(const FlowLook &bodies, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
-  /// Whether the grid has any.
+  /// Whether any phase on the grid is a membrane.
   static bool exists(const std::vector<Phase> &phases);
   std::size_t bytes() const override { return force_.bytes(); }
 
-  /// Where walls are: solid sides of the box, and `rigid` bodies, which do not travel; before any force.
+  /// Sets the walls of the film: solid boundaries of the box and the `rigid` bodies, which do not travel. Call before
+  /// any force.
   PetscErrorCode find_walls(const std::vector<const Phase *> &rigid);
-  /// Markers for all bodies, which keep the strain that they have, in place of those of the state. Collective.
+  /// Replaces the markers of the state by new ones for all bodies, which keep the present strain. Collective.
   PetscErrorCode place_markers();
-  /// Those of a state that was read, each on any rank. Collective.
+  /// Sets markers read from a file, each on any rank. Collective.
   PetscErrorCode set_markers(const std::vector<SurfaceMarker> &markers);
-  /// force += scale (div(delta tau) and the force of bending) at owned faces; with a factor also to `slope`. Of
-  /// move(), or found anew if a phase has been set since. `balanced`: as of SurfaceTension, for bending; the
-  /// divergence of a stress adds up to nothing.
+  /// Adds scale (div(delta tau) and the force of bending) to `force` at owned faces and, with its factor, to `slope`.
+  /// The force is that of the last move(); it is computed again if a phase has been set since. `balanced`: subtracts
+  /// the mean of the bending force, as SurfaceTension does; the divergence of a stress has no mean.
   PetscErrorCode add_force(const std::vector<Phase> &phases, double scale, bool balanced, Field &force,
                            const WeightedTarget &slope = {});
 
 private:
   /// Whether any membrane on the grid has markers.
-  bool marks() const;
-  /// Markers for the body `label` of a phase, 0: for all, which keep the strain that it has; `number`: of the phase.
+  bool has_any_markers() const;
+  /// Places markers for the body `label` of phase `number` (0: for all bodies), which keep the present strain.
   PetscErrorCode place_markers(const Phase &phase, int number, int label);
-  /// `work`: the memory that membrane_ uses.
+  /// Finds the surface of a phase; `work` holds the memory of membrane_.
   PetscErrorCode find(const Phase &phase, WorkSpace::Lease *work);
-  void begin_force();
-  PetscErrorCode gather_force(const Phase &phase, NetForce *net);
-  PetscErrorCode end_force(NetForce *net);
-  bool drives_all(const std::vector<Phase> &phases) const;
+  void clear_force();
+  PetscErrorCode add_phase_force(const Phase &phase, NetForce *net);
+  PetscErrorCode finish_force(NetForce *net);
+  bool accelerates_all(const std::vector<Phase> &phases) const;
 
   Flow &flow_;
-  MembraneMechanics membrane_;  ///< of the phase that is worked on
+  MembraneMechanics membrane_;  ///< of the phase being processed
   SurfaceMarkers markers_;
   WallFilm film_;
-  Field force_;        ///< at faces, if it is known
-  Real3 net_force_{};  ///< its mean, where that would drive all of the fluid
+  Field force_;        ///< at faces, valid if force_known_
+  Real3 net_force_{};  ///< mean of the bending force, where it would accelerate all of the fluid
   bool force_known_ = false;
 };
 

@@ -12,7 +12,7 @@ constexpr double weights[half + 1] = {6. / 16, 4. / 16, 1. / 16};
 
 }  // namespace
 
-// Pairs first: mirrored bits.
+// Adds opposite points first, so that a mirrored field gives mirrored bits.
 EULASTIC_CLONES void smooth_row(int dim, ConstView q, int j, int k, int begin, int end, double *across, double *out) {
   const int first = begin - half, last = end + half;
   std::fill(across + first, across + last, 0.0);
@@ -34,8 +34,8 @@ EULASTIC_CLONES void smooth_row(int dim, ConstView q, int j, int k, int begin, i
   }
 }
 
-// Force on a face takes the row before, and that what is around.
-bool cleared_around(const Box &box, const OccupiedRows &rows, int j, int k) {
+// The force on a face reads the row below and what is smoothed around both.
+bool is_near_occupied_row(const Box &box, const OccupiedRows &rows, int j, int k) {
   const int reach = half + 1, reach_z = box.dimension() == 3 ? reach : 0;
   for (int m = -reach_z; m <= reach_z; ++m)
     for (int o = -reach; o <= reach; ++o)
@@ -43,14 +43,14 @@ bool cleared_around(const Box &box, const OccupiedRows &rows, int j, int k) {
   return false;
 }
 
-void clear_around(const Box &box, const OccupiedRows &rows, int ghosts, View field) {
+void clear_near_rows(const Box &box, const OccupiedRows &rows, int ghosts, View field) {
   const Int3 &n = box.cells();
-  const int dim = box.dimension(), width = rows.inside() ? 0 : ghosts, deep = dim == 3 ? ghosts : 0;
+  const int dim = box.dimension(), width = rows.inside() ? 0 : ghosts, layers_z = dim == 3 ? ghosts : 0;
   const auto near = [&](int j, int k) {
     if (width > 0 && (j < width || j >= n[1] - width || (dim == 3 && (k < width || k >= n[2] - width)))) return true;
-    return cleared_around(box, rows, j, k);
+    return is_near_occupied_row(box, rows, j, k);
   };
-  for (int k = -deep; k < n[2] + deep; ++k)
+  for (int k = -layers_z; k < n[2] + layers_z; ++k)
     for (int j = -ghosts; j < n[1] + ghosts; ++j) {
       double *row = field.row(j, k);
       if (near(j, k)) {

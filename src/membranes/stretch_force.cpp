@@ -47,7 +47,7 @@ bool StretchForces::exist(const std::vector<Phase> &phases) {
                      [](const Phase &phase) { return !phase.boxed && phase.material.stretch_force.force > 0; });
 }
 
-// visit(phase, slot of the body, column, i, j, k) for owned cells of bodies that are pulled.
+// Calls visit(phase, slot of the body, column, i, j, k) for owned cells of bodies that are stretched.
 template <class Visit>
 void StretchForces::for_cells(const std::vector<Phase> &phases, const Visit &visit) const {
   for (const Phase &phase : phases) {
@@ -58,7 +58,8 @@ void StretchForces::for_cells(const std::vector<Phase> &phases, const Visit &vis
       for (int i = row.i_begin; i < row.i_end; ++i) {
         const int b = owners_->slot(static_cast<int>(label(i, row.j, row.k)) - 1);
         if (b < 0) continue;
-        const int low = flow_.domain.is_wall(0) ? -near_[b][0] : -(flow_.domain.domain_cells()[0] / 2);  // of offset()
+        // Smallest offset().
+        const int low = flow_.domain.is_wall(0) ? -near_[b][0] : -(flow_.domain.domain_cells()[0] / 2);
         visit(phase, b, static_cast<int>(offset(flow_.domain, near_[b], {i, row.j, row.k})[0]) - low, i, row.j, row.k);
       }
     }
@@ -102,7 +103,7 @@ PetscErrorCode StretchForces::add_rate(const MomentumRate &rate) {
   return add(targets);
 }
 
-// On the phases as they are, with labels and references of the last step.
+// Uses the phases of the state, with labels and references of the last step.
 PetscErrorCode StretchForces::add(const std::vector<WeightedTarget> &targets) {
   const std::vector<Phase> &phases = flow_.now.phases;
   WorkSpace::Lease lease;
@@ -125,13 +126,13 @@ PetscErrorCode StretchForces::add(const std::vector<WeightedTarget> &targets) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StretchForces::add_power(const FlowLook &look, double *power) {
+PetscErrorCode StretchForces::add_power(const FlowLook &bodies, double *power) {
   double total = 0;
   PetscFunctionBeginUser;
-  PetscCall(find(look.phases));
+  PetscCall(find(bodies.phases));
   ExactSums sum(1);
   const ConstView v = std::as_const(flow_.now.velocity)[0];
-  for_cells(look.phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
+  for_cells(bodies.phases, [&](const Phase &phase, int body, int column, int i, int j, int k) {
     const double force = pull_[body][column] * phase.fraction[0](i, j, k);
     sum.add(0, 0.5 * force * (v(i, j, k) + v(i + 1, j, k)));
   });

@@ -15,16 +15,17 @@
 namespace eulastic {
 namespace {
 
-constexpr double variance = 1.15;  // of filter and cell, in h^2; filtered once more: 1 more
-constexpr double solid = 1e-5;     // a body's own cells have more, as labels do
-constexpr double reach = 0.9;      // of the nearest cells, in cells across the surface
-// Of delta times its width in a nearest cell: half of what it is at `reach`. Between two sides of a body that are less
-// than two cells apart their slopes cancel, and the normal is that of neither.
+constexpr double variance = 1.15;        // of filter and cell, in h^2; a second filter adds 1
+constexpr double least_fraction = 1e-5;  // least phi of a cell that belongs to a body, as for labels
+constexpr double reach = 0.9;            // of the nearest cells, in cells across the surface
+// Least delta times its width in a nearest cell: half of its value at `reach`. Where two sides of a body are less than
+// two cells apart their slopes cancel, and the normal is that of neither side.
 constexpr double least_slope = 0.14;
-constexpr double far = 4;  // levels are cut here, where the filter ends
+constexpr double cut_level = 4;  // levels are limited to this, where the filter ends
 
-// The level of the surface itself: a filter moves a surface whose curvatures add up to kappa by half its variance times
-// kappa, twice the filter accordingly further. far - that, so that 0 is far outside.
+// Computes cut_level minus the level x of the surface itself, so that 0 is far outside. A filter moves a surface
+// by half its variance times the sum of the curvatures, and two filters move it further accordingly, which gives x by
+// extrapolation.
 EULASTIC_CLONES void level_row(const double *once, const double *twice, int begin, int end, double *out) {
   const double ratio = __builtin_sqrt((variance + 1) / variance);
   constexpr double reliable = 3.3;
@@ -32,18 +33,18 @@ EULASTIC_CLONES void level_row(const double *once, const double *twice, int begi
   for (int i = begin; i < end; ++i) {
     const double z = kernels::surface_level(once[i]), moved = z - ratio * kernels::surface_level(twice[i]);
     const double x = __builtin_fabs(z) < reliable ? kernels::fma(variance, moved, z) : z;
-    out[i] = far - (x < -far ? -far : x > far ? far : x);
+    out[i] = cut_level - (x < -cut_level ? -cut_level : x > cut_level ? cut_level : x);
   }
 }
 
-// The integral over x of the normal distribution N, in units of its width (Abramowitz and Stegun 26.2.17, 1e-7), and
-// that of N (1 + .7 (1 - x^2)), whose mean |x| is a third of that of N; docs/method.md, (26a). Both from -1/2 to 1/2
+// Integrals over x of the normal distribution N, in units of its width (Abramowitz and Stegun 26.2.17, error 1e-7), and
+// of N (1 + .7 (1 - x^2)), whose mean |x| is a third of that of N; docs/method.md, (26a). Both go from -1/2 to 1/2
 // across the surface.
 EULASTIC_CLONES void steps_row(const double *level, int begin, int end, double *sharp, double *spread) {
-  constexpr double peak = 0.3989422804014327, ends = 0.5003431;  // of the second at `far`
+  constexpr double peak = 0.3989422804014327, ends = 0.5003431;  // `ends`: the second integral at cut_level
 #pragma omp simd
   for (int i = begin; i < end; ++i) {
-    const double x = far - level[i], size = __builtin_fabs(x), away = size < far ? size : far;
+    const double x = cut_level - level[i], size = __builtin_fabs(x), away = size < cut_level ? size : cut_level;
     const double N = peak * kernels::exp(-0.5 * (away * away)), t = 1 / kernels::fma(0.2316419, away, 1.0);
     double tail = 1.330274429;
     tail = kernels::fma(tail, t, -1.821255978);
@@ -58,10 +59,11 @@ EULASTIC_CLONES void steps_row(const double *level, int begin, int end, double *
 
 }  // namespace
 
-// Differences of the steps add up to 1 across a surface. Those of the sharp one are too small by
-// (n_d h_d/width)^2 (1 - x^2)/6 and the next term, which turns normals towards the axes.
-void SurfaceCells::describe(const Field &fields, Cell *described) const {
-  Cell &cell = *described;
+// Computes normal, distance and deltas of a cell. Differences of the integrals add up to 1 across a surface. Those of
+// the first one are too small by the factor (n_d h_d/width)^2 (1 - x^2)/6 and the next term, which would turn normals
+// towards the axes and is corrected.
+void SurfaceCells::measure_cell(const Field &fields, Cell *measured) const {
+  Cell &cell = *measured;
   const Real3 &h = place_.box->spacing();
   Real3 sharp_step{}, spread_step{};
   for (int d = 0; d < place_.box->dimension(); ++d) {
@@ -81,14 +83,14 @@ void SurfaceCells::describe(const Field &fields, Cell *described) const {
     }
   };
   normalise(sharp_step);
-  const double x = far - fields[level].origin[cell.at], xx = std::min(x * x, 3.0), slope = (1 - xx) / 6,
+  const double x = cut_level - fields[level].origin[cell.at], xx = std::min(x * x, 3.0), slope = (1 - xx) / 6,
                bend = kernels::fma(xx - 6, xx, 3.0) / 120;
-  Real3 mended = sharp_step;
+  Real3 corrected = sharp_step;
   for (int d = 0; d < 3 && width > 0; ++d) {
     const double q = (cell.normal[d] * h[d]) * (cell.normal[d] * h[d]) / width;
-    mended[d] /= kernels::fma(q, kernels::fma(q, bend, -slope), 1);
+    corrected[d] /= kernels::fma(q, kernels::fma(q, bend, -slope), 1);
   }
-  normalise(mended);
+  normalise(corrected);
   cell.distance = x * __builtin_sqrt(width);
   cell.delta = dot(cell.normal, sharp_step);
   cell.spread = dot(cell.normal, spread_step);
@@ -96,7 +98,7 @@ void SurfaceCells::describe(const Field &fields, Cell *described) const {
   for (int d = 0; d < 3; ++d) cell.owned = cell.owned && cell.place[d] >= 0 && cell.place[d] < place_.box->cells()[d];
 }
 
-// Levels are nearly linear: a quadratic through three along each direction.
+// Interpolates the levels, which are nearly linear, by a quadratic through three points along each direction.
 double SurfaceCells::distance_at(const Field &fields, const Cell &cell, const Real3 &offset) const {
   const ConstView levels = fields[level];
   double weight[3][3] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, x = 0;
@@ -106,16 +108,16 @@ double SurfaceCells::distance_at(const Field &fields, const Cell &cell, const Re
     weight[d][1] = 1 - o * o;
     weight[d][2] = 0.5 * o * (o + 1);
   }
-  const int deep = place_.box->dimension() == 3 ? 1 : 0;
-  for (int k = -deep; k <= deep; ++k)
+  const int layers_z = place_.box->dimension() == 3 ? 1 : 0;
+  for (int k = -layers_z; k <= layers_z; ++k)
     for (int j = -1; j <= 1; ++j)
       for (int i = -1; i <= 1; ++i)
         x += weight[0][i + 1] * weight[1][j + 1] * weight[2][k + 1] *
-             (far - levels.origin[cell.at + i + j * levels.sy + k * levels.sz]);
+             (cut_level - levels.origin[cell.at + i + j * levels.sy + k * levels.sz]);
   return x * width(cell.normal);
 }
 
-// Of delta.
+// Width of delta.
 double SurfaceCells::width(const Real3 &normal) const {
   double square = 0;
   for (int d = 0; d < place_.box->dimension(); ++d) {
@@ -125,13 +127,14 @@ double SurfaceCells::width(const Real3 &normal) const {
   return __builtin_sqrt(square);
 }
 
-// Of this rank, with ghosts where bodies may reach into them: rows that wrap around hold both ends of what is inside.
+// Indices of this rank, with ghosts if bodies may reach into them. Rows that wrap around a periodic direction contain
+// both ends of a body.
 Box::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const {
   const bool alone = phase.rows.inside() && !(d == 0 && place_.box->wraps_x());
   return place_.box->points_near(d, false, d < place_.box->dimension() && !alone ? ghosts : 0);
 }
 
-// Whether the first filter reads behind one: also from cells of other ranks, which are ghosts here, so that all ranks
+// Whether the first filter reads behind a solid boundary. Ghost cells are checked as well, so that all ranks
 // that see a body there agree.
 bool SurfaceCells::is_beside_solid_side(const Phase &phase) const {
   const Int3 &n = place_.box->cells();
@@ -149,25 +152,25 @@ bool SurfaceCells::is_beside_solid_side(const Phase &phase) const {
   return false;
 }
 
-// psi, levels and steps. A body ends at a solid side, where phi goes on as if it did not: its surface is seen there
-// too.
+// Computes psi, levels and integrals. A body ends at a solid boundary, although phi continues behind it, so
+// that its surface is found there too.
 PetscErrorCode SurfaceCells::find_level(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
-  const int dim = place_.box->dimension(), ghosts = place_.box->layout().ghosts[0], deep = dim == 3 ? ghosts : 0;
+  const int dim = place_.box->dimension(), ghosts = place_.box->layout().ghosts[0], layers_z = dim == 3 ? ghosts : 0;
   const Int3 &n = place_.box->cells();
   ConstView phi = phase.fraction[0];
   if (is_beside_solid_side(phase)) {
     const View copy = fields[sharp];
-    for (int k = -deep; k < n[2] + deep; ++k)
+    for (int k = -layers_z; k < n[2] + layers_z; ++k)
       for (int j = -ghosts; j < n[1] + ghosts; ++j)
-        if (cleared_around(*place_.box, phase.rows, j, k))
+        if (is_near_occupied_row(*place_.box, phase.rows, j, k))
           std::copy_n(phi.row(j, k) - ghosts, n[0] + 2 * ghosts, copy.row(j, k) - ghosts);
     clear_solid_ghosts(*place_.box, *place_.sides, copy, ghosts, &phase.rows);
     phi = copy;
   }
   const auto fill = [&](int field, const auto &row) {
     PetscFunctionBeginUser;
-    clear_around(*place_.box, phase.rows, ghosts, fields[field]);
+    clear_near_rows(*place_.box, phase.rows, ghosts, fields[field]);
     in_row_parts(*place_.box, [&](const RowPart &part) {
       RowScratch scratch(*place_.box, 2);
       for (int k = part.k_begin; k < part.k_end; ++k)
@@ -191,22 +194,22 @@ PetscErrorCode SurfaceCells::find_level(const Phase &phase, Field &fields) {
     smooth_row(dim, once, j, k, begin, end, scratch.row(0), scratch.row(1));
     level_row(once.row(j, k), scratch.row(1), begin, end, fields[level].row(j, k));
   }));
-  const int rows = n[1] + 2 * ghosts, planes = n[2] + 2 * deep;
+  const int rows = n[1] + 2 * ghosts, planes = n[2] + 2 * layers_z;
   const int parts = row_parts(*place_.box);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(std::size_t(rows) * planes, part, parts);
     for (std::size_t r = piece.begin; r < piece.end; ++r) {
-      const int j = static_cast<int>(r % rows) - ghosts, k = static_cast<int>(r / rows) - deep;
-      if (cleared_around(*place_.box, phase.rows, j, k))
+      const int j = static_cast<int>(r % rows) - ghosts, k = static_cast<int>(r / rows) - layers_z;
+      if (is_near_occupied_row(*place_.box, phase.rows, j, k))
         steps_row(fields[level].row(j, k), -ghosts, n[0] + ghosts, fields[sharp].row(j, k), fields[spread].row(j, k));
     }
   });
   PetscFunctionReturn(0);
 }
 
-// The cells within reach of the surface.
+// Lists the cells within reach of the surface.
 void SurfaceCells::find_nearest(const Phase &phase, ConstView levels) {
-  const double within = far - reach / __builtin_sqrt(variance);
+  const double within = cut_level - reach / __builtin_sqrt(variance);
   const auto range = [&](int d) { return near_box(phase, d, layers + 1); };
   const ConstView phi = phase.fraction[0];
   cells_.clear();
@@ -215,7 +218,7 @@ void SurfaceCells::find_nearest(const Phase &phase, ConstView levels) {
       const OccupiedRows::Span s = phase.rows.span(j, k);
       for (int i = std::max(s.begin, range(0).begin); i < std::min(s.end, range(0).end); ++i) {
         const double value = levels(i, j, k);
-        if (!(value >= within && value <= 2 * far - within && phi(i, j, k) > solid)) continue;
+        if (!(value >= within && value <= 2 * cut_level - within && phi(i, j, k) > least_fraction)) continue;
         cells_.push_back({});
         cells_.back().place = {i, j, k};
         cells_.back().at = i + j * levels.sy + k * levels.sz;
@@ -228,18 +231,18 @@ PetscErrorCode SurfaceCells::find(const Phase &phase, Field &fields) {
   VerbScope scope(Verb::membrane);
   PetscCall(find_level(phase, fields));
   find_nearest(phase, fields[level]);
-  const auto describe_from = [&](std::size_t first) {
+  const auto measure_from = [&](std::size_t first) {
     const int parts = row_parts(*place_.box);
     in_parallel(parts, parts, [&](int part) {
       const Piece piece(cells_.size() - first, part, parts);
-      for (std::size_t c = first + piece.begin; c < first + piece.end; ++c) describe(fields, &cells_[c]);
+      for (std::size_t c = first + piece.begin; c < first + piece.end; ++c) measure_cell(fields, &cells_[c]);
     });
   };
-  describe_from(0);
+  measure_from(0);
   const auto is_between_sides = [this](const Cell &cell) { return !(cell.delta * width(cell.normal) > least_slope); };
   cells_.erase(std::remove_if(cells_.begin(), cells_.end(), is_between_sides), cells_.end());
   find_layers(phase);
-  describe_from(nearest());
+  measure_from(nearest_count());
   scope.flops(double(phase.rows.cells()) * (place_.box->dimension() == 2 ? 90 : 270));
   PetscFunctionReturn(0);
 }
@@ -248,12 +251,13 @@ namespace {
 
 constexpr unsigned char in_no_layer = 0;
 
-// Cells of a row that are in no layer and beside one that is marked are taken; whether there are any.
-bool take_neighbours(const unsigned char *marked, const Box::Range &x, unsigned char taken, unsigned char *row) {
+// Adds the cells of a row that are in no layer and beside a marked cell to layer `layer`; returns whether there are
+// any.
+bool mark_layer(const unsigned char *marked, const Box::Range &x, unsigned char layer, unsigned char *row) {
   unsigned char found = 0;
   for (int i = x.begin; i < x.end; ++i) {
     const bool in = row[i] == in_no_layer && (marked[i - 1] | marked[i] | marked[i + 1]);
-    row[i] = in ? taken : row[i];
+    row[i] = in ? layer : row[i];
     found |= in;
   }
   return found;
@@ -261,12 +265,12 @@ bool take_neighbours(const unsigned char *marked, const Box::Range &x, unsigned 
 
 }  // namespace
 
-// Layer L are the cells not yet in one that have a neighbour, corners too, in layer L - 1; row after row, in the order
-// of memory.
+// Layer L contains the cells that are in no lower layer and have a neighbour, corners included, in layer L - 1. Rows
+// are processed in the order of memory.
 void SurfaceCells::find_layers(const Phase &phase) {
   const Layout &layout = place_.box->layout();
-  const int deep = place_.box->dimension() == 3 ? 1 : 0, rows_y = layout.cells[1] + 2 * layout.ghosts[1];
-  constexpr unsigned char first = in_no_layer + 1;  // first + L: of layer L
+  const int layers_z = place_.box->dimension() == 3 ? 1 : 0, rows_y = layout.cells[1] + 2 * layout.ghosts[1];
+  constexpr unsigned char first = in_no_layer + 1;  // first + L marks layer L
   std::vector<unsigned char> layer(layout.size, in_no_layer);
   std::vector<int> last_layer(std::size_t(rows_y) * (layout.cells[2] + 2 * layout.ghosts[2]), -1);  // of every row
   const auto row_of = [&](int j, int k) { return layer.data() + layout.origin + j * layout.sy + k * layout.sz; };
@@ -294,7 +298,7 @@ void SurfaceCells::find_layers(const Phase &phase) {
     each_row([&](int j, int k) {
       unsigned char *around = beside.data() + layout.ghosts[0];
       bool any = false;
-      for (int m = -deep; m <= deep; ++m)
+      for (int m = -layers_z; m <= layers_z; ++m)
         for (int o = -1; o <= 1; ++o) {
           if (last_of(j + o, k + m) < l - 1) continue;
           if (!any) std::fill(beside.begin(), beside.end(), 0);
@@ -302,7 +306,7 @@ void SurfaceCells::find_layers(const Phase &phase) {
           const unsigned char *from = row_of(j + o, k + m), before = first + l - 1;
           for (int i = x.begin - 1; i < x.end + 1; ++i) around[i] |= from[i] == before;
         }
-      if (any && take_neighbours(around, x, first + l, row_of(j, k))) last_of(j, k) = l;
+      if (any && mark_layer(around, x, first + l, row_of(j, k))) last_of(j, k) = l;
     });
     each_row([&](int j, int k) {
       if (last_of(j, k) < l) return;
@@ -324,7 +328,7 @@ void SurfaceCells::find_layers(const Phase &phase) {
 PetscErrorCode SurfaceCells::find_labels(const Phase &phase, Field &scratch, std::vector<int> *labels) const {
   PetscFunctionBeginUser;
   const View all = scratch[0];
-  for (std::size_t c = 0; c < nearest(); ++c)
+  for (std::size_t c = 0; c < nearest_count(); ++c)
     if (cells_[c].owned) all.origin[cells_[c].at] = phase.label[0].origin[cells_[c].at];
   PetscCall(place_.exchange_ghosts(scratch, layers, &phase.rows));
   const Layout &layout = place_.box->layout();
@@ -352,17 +356,17 @@ PetscErrorCode SurfaceCells::find_labels(const Phase &phase, Field &scratch, std
   PetscFunctionReturn(0);
 }
 
-// What lives on a surface, extended from the cells nearest to it.
+// Extrapolation from the nearest cells to the layers.
 
 namespace {
 
-// The cells around one, in the order of memory.
+// The 3^d cells around a cell, in the order of memory.
 template <int Dim>
-struct Around {
+struct Neighbourhood {
   static constexpr int count = Dim == 3 ? 27 : 9;
   double x[count], y[count], z[count], length[count];
   std::ptrdiff_t first_of_row[count / 3];
-  explicit Around(const Layout &layout) {
+  explicit Neighbourhood(const Layout &layout) {
     int n = 0;
     for (int k = Dim == 3 ? -1 : 0; k <= (Dim == 3 ? 1 : 0); ++k)
       for (int j = -1; j <= 1; ++j) {
@@ -377,10 +381,10 @@ struct Around {
   }
 };
 
-// Fields side by side: whole vectors.
+// Number of fields that are processed side by side, as whole vectors.
 constexpr int width = 8;
 
-// kernels::sum_around() of the 3^d cells around one, of fields side by side, into the first; spoils the others.
+// Computes kernels::sum_around() of the 3^d cells around one, for fields side by side, in v[0]; overwrites the others.
 template <int Dim>
 EULASTIC_INLINE void nested_sums(double (*v)[width]) {
   const auto along = [&](int first, int s) EULASTIC_BODY {
@@ -396,16 +400,16 @@ EULASTIC_INLINE void nested_sums(double (*v)[width]) {
 
 struct Source {
   const std::vector<SurfaceCells::Cell> *cells;
-  const int *number;  // by offset from the origin
-  int known;          // numbers below this one: nearer to the surface
+  const int *number;  // of the cell at an offset from the origin
+  int known;          // cells with lower numbers are nearer to the surface and already filled
 };
 
-// One point of a layer from those of its neighbours that are nearer to the surface, weighted by how far they lie
-// towards it, and turned into its plane.
+// Fills one cell of a layer from its neighbours nearer to the surface, weighted by how far they lie towards it,
+// each turned into the plane of the cell.
 template <int Dim>
-EULASTIC_INLINE void fill_point(const Source &source, const Around<Dim> &around, const SurfaceCells::Cell &cell,
+EULASTIC_INLINE void fill_point(const Source &source, const Neighbourhood<Dim> &around, const SurfaceCells::Cell &cell,
                                 Field &tensor) {
-  constexpr int count = Around<Dim>::count, fields = Dim == 3 ? 6 : 3;
+  constexpr int count = Neighbourhood<Dim>::count, fields = Dim == 3 ? 6 : 3;
   int from[count];
   for (int r = 0; r < count / 3; ++r)
     for (int i = 0; i < 3; ++i) from[3 * r + i] = source.number[cell.at + around.first_of_row[r] + i];
@@ -425,7 +429,7 @@ EULASTIC_INLINE void fill_point(const Source &source, const Around<Dim> &around,
     sum = kernels::sum_around<Dim>(plain + count / 2, stride);
     w = plain;
   }
-  // Neighbours that count, side by side, and zeros to fill the last vector.
+  // Neighbours with a weight, side by side, and zeros to fill the last vector.
   constexpr int most = (count + width - 1) / width * width;
   alignas(64) double share[most], normals[Dim][most], tensors[fields][most];
   int place[count + 1], neighbours = 0;
@@ -455,11 +459,11 @@ EULASTIC_INLINE void fill_point(const Source &source, const Around<Dim> &around,
   for (int f = 0; f < fields; ++f) tensor[f].origin[cell.at] = values[0][f] / sum;
 }
 
-EULASTIC_CLONES void fill_2d(const Source &source, const Around<2> &around, std::size_t begin, std::size_t end,
+EULASTIC_CLONES void fill_2d(const Source &source, const Neighbourhood<2> &around, std::size_t begin, std::size_t end,
                              Field &tensor) {
   for (std::size_t c = begin; c < end; ++c) fill_point<2>(source, around, (*source.cells)[c], tensor);
 }
-EULASTIC_CLONES void fill_3d(const Source &source, const Around<3> &around, std::size_t begin, std::size_t end,
+EULASTIC_CLONES void fill_3d(const Source &source, const Neighbourhood<3> &around, std::size_t begin, std::size_t end,
                              Field &tensor) {
   for (std::size_t c = begin; c < end; ++c) fill_point<3>(source, around, (*source.cells)[c], tensor);
 }
@@ -478,8 +482,8 @@ PetscErrorCode SurfaceCells::extend(const Phase &phase, Field &tensor) const {
   PetscCall(exchange(phase, tensor, layers + 1));
   VerbScope scope(Verb::membrane);
   const Layout &layout = place_.box->layout();
-  const Around<2> flat(layout);
-  const Around<3> around(layout);
+  const Neighbourhood<2> flat(layout);
+  const Neighbourhood<3> around(layout);
   const int parts = row_parts(*place_.box);
   for (int l = 1; l <= layers; ++l) {
     const Source source{&cells_, number_.data() + layout.origin, static_cast<int>(first_[l])};

@@ -1,5 +1,5 @@
-// The cells around the surface of a phase: normal, distance and delta of the surface from a smoothed solid fraction,
-// and what lives on the surface extended from the cells nearest to it; docs/method.md, section 18.
+// The cells around the surface of a phase, with normal, distance and delta of the surface from the smoothed phi, and
+// the extrapolation of tensors from the cells nearest to the surface; docs/method.md, section 18.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -9,39 +9,40 @@ namespace eulastic {
 
 class SurfaceCells {
 public:
-  /// Around the cells at the surface, neighbours at corners included: as far as WENO5 reads and delta reaches.
+  /// Layers around the nearest cells, neighbours at corners included: as far as WENO5 reads and delta extends.
   static constexpr int layers = 3;
   struct Cell {
     Int3 place;
     std::ptrdiff_t at;  ///< offset from the origin
-    Real3 normal;       ///< outward, unit
+    Real3 normal;       ///< outward, of length 1
     double distance;    ///< from the surface, positive outside
     double delta;       ///< of the surface, 1/length
-    double spread;      ///< delta that spreads the force: the velocity at the surface is as if it had no width
-    int layer;          ///< 0: nearest
+    double spread;      ///< delta with which the force is spread, (26a), 1/length
+    int layer;          ///< 0: nearest cells
     bool owned;
   };
 
-  /// What `place` points to must outlive this.
+  /// The objects in `place` must outlive this.
   explicit SurfaceCells(const PhasePlace &place) : place_(place) {}
-  /// Of the work space, and what find() leaves there, ghosts included: phi smoothed, 0 within two cells around the rows
-  /// of the phase, levels of the surface, and two steps across it, whose slopes are delta and spread.
+  /// Components of `fields` after find(), ghosts included: smoothed phi, which is 0 within two cells around the rows of
+  /// the phase; levels of the surface; and two step functions across it, whose slopes are delta and spread.
   static constexpr int work_fields = 4;
   enum Scratch { smoothed, level, sharp, spread };
-  /// Five ghosts of phi.
+  /// Finds the surface from phi with five ghosts. Collective on the grid.
   PetscErrorCode find(const Phase &phase, Field &fields);
-  /// Those at the surface first, then the layers around them: up to four layers of ghosts of the former, one less with
-  /// every layer.
+  /// The nearest cells first, then the layers around them. Nearest cells include up to four ghost layers, each further
+  /// layer one less.
   const std::vector<Cell> &all() const { return cells_; }
-  std::size_t nearest() const { return first_[1]; }  ///< how many
-  /// Of a point so many cells from the centre of one of all(), a cell at most; `fields` as find() left them.
+  std::size_t nearest_count() const { return first_[1]; }
+  /// Distance from the surface of a point at `offset` (in cells, at most 1) from the centre of a cell of all().
+  /// `fields` as find() left them.
   double distance_at(const Field &fields, const Cell &cell, const Real3 &offset) const;
-  /// Which of all() lies at an offset from the origin; -1: none.
+  /// Index in all() of the cell at an offset from the origin; -1 if there is none.
   int number(std::ptrdiff_t at) const { return number_[place_.box->layout().origin + at]; }
-  /// Fills layers and three ghosts of a tensor whose components all live at centres from the nearest cells.
+  /// Fills the layers and three ghosts of a tensor, all of whose components are at centres, from the nearest cells.
   PetscErrorCode extend(const Phase &phase, Field &tensor) const;
-  /// The bodies that owned cells belong to, in the order of all(): a layer has those of its neighbours in the one
-  /// before. `scratch`: a field of work space.
+  /// Labels of the bodies that owned cells belong to, in the order of all(); a layer takes them from its neighbours in
+  /// the layer before. `scratch`: one component of work space. Collective on the grid.
   PetscErrorCode find_labels(const Phase &phase, Field &scratch, std::vector<int> *labels) const;
 
 private:
@@ -50,14 +51,14 @@ private:
   PetscErrorCode find_level(const Phase &phase, Field &fields);
   void find_nearest(const Phase &phase, ConstView levels);
   void find_layers(const Phase &phase);
-  void describe(const Field &fields, Cell *cell) const;
+  void measure_cell(const Field &fields, Cell *cell) const;
   double width(const Real3 &normal) const;
   PetscErrorCode exchange(const Phase &phase, Field &tensor, int width) const;
 
   PhasePlace place_;
   std::vector<Cell> cells_;
   std::array<std::size_t, layers + 2> first_{};  ///< of every layer
-  std::vector<int> number_;                      ///< of the cells, -1: none; by offset from the memory's start
+  std::vector<int> number_;                      ///< number of the cell at an offset from the start of memory, -1: none
 };
 
 }  // namespace eulastic

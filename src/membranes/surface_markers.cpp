@@ -13,12 +13,12 @@
 namespace eulastic {
 namespace {
 
-constexpr double settling = 0.2;     // of the distance from the surface, in every step
-constexpr double least_label = 0.5;  // of a cell that has one
+constexpr double pull_share = 0.2;   // part of the distance by which markers are pulled to the surface in every step
+constexpr double least_label = 0.5;  // labels of one body differ by less
 
 std::ptrdiff_t offset_of(const Layout &layout, const Int3 &c) { return c[0] + c[1] * layout.sy + c[2] * layout.sz; }
 
-// Component a of the velocity at so many cells from a cell's centre.
+// Component a of the velocity at `offset` (in cells) from the centre of a cell.
 template <int Dim>
 double velocity_at(ConstView v, int a, const Int3 &cell, const Real3 &offset) {
   int first[3]{0, 0, cell[2]};
@@ -48,6 +48,7 @@ void move_marker(const Real3 &spacing, double dt, const Field &velocity, const I
   marker->offset = end;
 }
 
+// M of (25a): the inverse of B_s along the surface, with the mean of its eigenvalues along the normal n.
 template <int Dim>
 std::array<double, 6> metric_of(const kernels::Tensor<Dim> &B, const kernels::Vector<Dim> &n) {
   const auto t = kernels::tangents<Dim>(n);
@@ -72,14 +73,14 @@ Int3 SurfaceMarkers::local_cell(const SurfaceMarker &marker) const {
   return local;
 }
 
-// Where a cell is counted that a marker has come to; at a wall not beyond.
+// Index of the cell that a marker has entered: wrapped around periodic directions, limited at boundaries.
 int SurfaceMarkers::in_domain(int d, int index) const {
   if (box_->is_wall(d)) return std::clamp(index, 0, box_->domain_cells()[d] - 1);
   return domain_ ? box_->image(d, index) : index;
 }
 
-// Into the cell where it is.
-void SurfaceMarkers::renew_cell(SurfaceMarker *marker) const {
+// Refers the marker to the cell that contains it.
+void SurfaceMarkers::update_cell(SurfaceMarker *marker) const {
   for (int d = 0; d < box_->dimension(); ++d) {
     double &offset = marker->offset[d];
     const double cells = std::floor(offset + 0.5);
@@ -104,7 +105,7 @@ void SurfaceMarkers::place(const SurfaceCells &surface, const Field &fields, con
                            std::vector<SurfaceMarker> *markers) const {
   constexpr int approaches = 3;
   const Int3 &begin = box_->layout().begin, &cells = box_->domain_cells();
-  for (std::size_t c = 0; c < surface.nearest(); ++c) {
+  for (std::size_t c = 0; c < surface.nearest_count(); ++c) {
     const SurfaceCells::Cell &cell = surface.all()[c];
     const int own = phase.label ? static_cast<int>(phase.label[0].origin[cell.at]) : 0;
     if (!cell.owned || (phase.label && own == 0) || (label != 0 && own != label)) continue;
@@ -120,7 +121,7 @@ void SurfaceMarkers::place(const SurfaceCells &surface, const Field &fields, con
     marker.metric = box_->dimension() == 2
                         ? metric_of<2>(tensor_at<2>(phase.tensor.field, cell.at), normal_of<2>(cell.normal))
                         : metric_of<3>(tensor_at<3>(phase.tensor.field, cell.at), normal_of<3>(cell.normal));
-    renew_cell(&marker);
+    update_cell(&marker);
     markers->push_back(marker);
   }
 }
@@ -136,7 +137,7 @@ PetscErrorCode SurfaceMarkers::move(double dt, const Field &velocity, std::vecto
         SurfaceMarker *marker = &(*markers)[m];
         const auto move = box_->dimension() == 2 ? move_marker<2> : move_marker<3>;
         move(box_->spacing(), dt, velocity, local_cell(*marker), marker);
-        renew_cell(marker);
+        update_cell(marker);
       }
     });
     scope.flops(double(markers->size()) * (box_->dimension() == 2 ? 300 : 1200));
@@ -145,7 +146,7 @@ PetscErrorCode SurfaceMarkers::move(double dt, const Field &velocity, std::vecto
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SurfaceMarkers::send_home(std::vector<SurfaceMarker> *markers) const {
+PetscErrorCode SurfaceMarkers::send_to_owners(std::vector<SurfaceMarker> *markers) const {
   std::vector<int> owners;
   PetscFunctionBeginUser;
   for (const SurfaceMarker &marker : *markers)
@@ -154,7 +155,7 @@ PetscErrorCode SurfaceMarkers::send_home(std::vector<SurfaceMarker> *markers) co
   PetscFunctionReturn(0);
 }
 
-// A rank has three cells at least, so that it or its neighbours along a direction own all that is within three.
+// A rank has at least three cells in every direction, so that it and its neighbours own all cells within three.
 PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
   PetscFunctionBeginUser;
   if (!domain_ || domain_->ranks() == 1) {
@@ -165,7 +166,7 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
   all_.clear();
   for (const SurfaceMarker &marker : *markers) {
     const Int3 local = local_cell(marker);
-    bool inside = true;  // nobody else needs it
+    bool inside = true;  // no other rank needs the marker
     for (int d = 0; d < domain_->dimension(); ++d)
       inside = inside && (domain_->processors(d) == 1 || (local[d] >= reach && local[d] + reach < domain_->cells()[d]));
     if (inside) {
@@ -173,7 +174,7 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
       all_.push_back(marker);
       continue;
     }
-    std::set<int> to;  // the owners of the corners and middles of the box of cells within reach
+    std::set<int> to;  // owners of corners and middles of the block within reach
     const int reach_z = domain_->dimension() == 3 ? reach : 0;
     for (const int z : {-reach_z, 0, reach_z})
       for (const int y : {-reach, 0, reach})
@@ -194,23 +195,23 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
 
 void SurfaceMarkers::settle(const SurfaceCells &surface, const Field &fields, int phase,
                             std::vector<SurfaceMarker> *markers) const {
-  const auto far = [&](SurfaceMarker &marker) {
-    return marker.phase == phase && !approach(surface, fields, settling, &marker);
+  const auto is_far = [&](SurfaceMarker &marker) {
+    return marker.phase == phase && !approach(surface, fields, pull_share, &marker);
   };
-  markers->erase(std::remove_if(markers->begin(), markers->end(), far), markers->end());
+  markers->erase(std::remove_if(markers->begin(), markers->end(), is_far), markers->end());
 }
 
-void SurfaceMarkers::follow(const std::vector<Phase> &phases, std::vector<SurfaceMarker> *markers) const {
+void SurfaceMarkers::update_phases(const std::vector<Phase> &phases, std::vector<SurfaceMarker> *markers) const {
   const Layout &layout = domain_->layout();
-  const int deep = domain_->dimension() == 3 ? 1 : 0;
+  const int layers_z = domain_->dimension() == 3 ? 1 : 0;
   const auto lost = [&](SurfaceMarker &marker) {
     if (marker.label == 0) return false;
     const Int3 cell = local_cell(marker);
-    for (const int beside : {0, 1})  // its own cell as a rule
+    for (const int beside : {0, 1})  // in general its own cell suffices
       for (std::size_t p = 0; p < phases.size(); ++p) {
         if (!phases[p].material.is_membrane()) continue;
         const double *label = phases[p].label[0].origin + offset_of(layout, cell);
-        for (int k = -beside * deep; k <= beside * deep; ++k)
+        for (int k = -beside * layers_z; k <= beside * layers_z; ++k)
           for (int j = -beside; j <= beside; ++j)
             for (int i = -beside; i <= beside; ++i)
               if (std::fabs(label[i + j * layout.sy + k * layout.sz] - marker.label) < least_label) {
@@ -223,36 +224,37 @@ void SurfaceMarkers::follow(const std::vector<Phase> &phases, std::vector<Surfac
   markers->erase(std::remove_if(markers->begin(), markers->end(), lost), markers->end());
 }
 
-// The strain of a surface from where its markers are and were.
+// Strain of a surface from present and undeformed positions of its markers, (25a).
 
 namespace {
 
 template <int Dim>
-constexpr double radius = Dim == 2 ? 2.5 : 2;  // cells around a point of the surface in which markers tell of it
+constexpr double radius = Dim == 2 ? 2.5 : 2;  // cells, distance of the markers that are used at a surface point
 constexpr int reach = SurfaceMarkers::reach;
 constexpr double round_off = 1e-9;  // of a metric
 template <int Dim>
-constexpr int fewest = Dim == 2 ? 5 : 8;  // markers: two more than coefficients
-constexpr double same_side = 0.3;         // least cosine between normals
-constexpr double trusted = 0.3;           // cells: largest deviation of their places at rest from a quadratic, rms
+constexpr int least_count = Dim == 2 ? 5 : 8;  // number of markers: two more than coefficients
+constexpr double same_side = 0.3;              // least cosine between normals
+constexpr double largest_residual = 0.3;       // cells: rms deviation of undeformed positions from a quadratic
 
 struct Sources {
   const Box *box;
   const SurfaceCells *surface;
   const SurfaceMarker *markers;
-  const int *begin;  // by offset from the origin
+  const int *begin;  // first index in marker_of, by offset of the cell from the origin
 };
 
-// What is seen of a marker from a point of the surface.
-struct Seen {
+// A marker near a point of the surface.
+struct Neighbour {
   const SurfaceMarker *marker;
-  Real3 away;     // length
-  double square;  // of the distance in cells
+  Real3 away;     // from the point, length
+  double square;  // squared distance in cells
 };
 
+// Lists the markers near a cell's surface point that are on the same side of the body. Returns their number.
 template <int Dim>
-EULASTIC_INLINE int look_around(const Sources &from, const int *marker_of, const SurfaceCells::Cell &cell, Seen *seen,
-                                int most) {
+EULASTIC_INLINE int find_neighbours(const Sources &from, const int *marker_of, const SurfaceCells::Cell &cell,
+                                    Neighbour *neighbours, int most) {
   const Real3 &h = from.box->spacing();
   const Layout &layout = from.box->layout();
   int count = 0;
@@ -268,7 +270,7 @@ EULASTIC_INLINE int look_around(const Sources &from, const int *marker_of, const
         if (!(cosine > same_side)) continue;
         const Int3 step{x, y, z};
         for (int m = first; m < last && count < most; ++m) {
-          Seen &one = seen[count];
+          Neighbour &one = neighbours[count];
           one.marker = from.markers + marker_of[m];
           one.square = 0;
           for (int d = 0; d < Dim; ++d) {
@@ -282,25 +284,26 @@ EULASTIC_INLINE int look_around(const Sources &from, const int *marker_of, const
   return count;
 }
 
-// B_s at a point of the surface from the places at rest of the markers around it and from their heights over the plane
-// t: both as quadratics. `nearest`: a marker of its body and its side.
+// Computes B_s at a surface point from undeformed positions of the markers around it and their heights over the plane
+// with tangents t, both fitted by quadratics. `nearest`: a marker that identifies body and side. Returns false if the
+// markers do not determine it.
 template <int Dim, int Values>
-EULASTIC_INLINE bool strain_around(const Box &box, const kernels::Vector<Dim> &n, const Seen *seen, int count,
-                                   const SurfaceMarker &nearest, kernels::Tensor<Dim> *B) {
+EULASTIC_INLINE bool strain_around(const Box &box, const kernels::Vector<Dim> &n, const Neighbour *neighbours,
+                                   int count, const SurfaceMarker &nearest, kernels::Tensor<Dim> *B) {
   constexpr int height = Dim, metric = Dim + 1;
   const auto t = kernels::tangents<Dim>(n);
   const Real3 &h = box.spacing();
   const double length = radius<Dim> * std::max({h[0], h[1], Dim == 3 ? h[2] : 0});
   kernels::SurfacePoints<Values> points;
   for (int m = 0; m < count; ++m) {
-    const SurfaceMarker &marker = *seen[m].marker;
+    const SurfaceMarker &marker = *neighbours[m].marker;
     double cosine = 0, along[2] = {}, up = 0;
     for (int d = 0; d < Dim; ++d) cosine += marker.normal[d] * nearest.normal[d];
     if (marker.label != nearest.label || !(cosine > same_side)) continue;
     for (int a = 0; a < Dim - 1; ++a)
-      for (int d = 0; d < Dim; ++d) along[a] += seen[m].away[d] * t[a][d];
-    for (int d = 0; d < Dim; ++d) up += seen[m].away[d] * n[d];
-    const double near = 1 - seen[m].square / (radius<Dim> * radius<Dim>);
+      for (int d = 0; d < Dim; ++d) along[a] += neighbours[m].away[d] * t[a][d];
+    for (int d = 0; d < Dim; ++d) up += neighbours[m].away[d] * n[d];
+    const double near = 1 - neighbours[m].square / (radius<Dim> * radius<Dim>);
     points.u[points.count] = along[0] / length;
     points.v[points.count] = along[1] / length;
     points.weight[points.count] = near * near;
@@ -314,11 +317,11 @@ EULASTIC_INLINE bool strain_around(const Box &box, const kernels::Vector<Dim> &n
     for (int q = metric; q < Values; ++q) points.value[q][points.count] = marker.metric[q - metric];
     ++points.count;
   }
-  if (points.count < fewest<Dim>) return false;
+  if (points.count < least_count<Dim>) return false;
   points.fill_up();
   kernels::SurfaceFit<Dim, Values> fit;
   if (!kernels::fit_surface<Dim, Values>(points, &fit)) return false;
-  constexpr double most = trusted / radius<Dim>;
+  constexpr double most = largest_residual / radius<Dim>;
   if (!(fit.residual < most * most)) return false;
   std::array<double, 6> rest = nearest.metric;
   for (int q = metric; q < Values; ++q) rest[q - metric] = fit.coefficient[0][q];
@@ -330,30 +333,31 @@ EULASTIC_INLINE bool strain_around(const Box &box, const kernels::Vector<Dim> &n
           G[a][b] += fit.coefficient[1 + a][x] * rest[kernels::position<3>(x, y)] * fit.coefficient[1 + b][y];
   const double area = Dim == 2 ? G[0][0] : G[0][0] * G[Dim - 2][Dim - 2] - G[0][Dim - 2] * G[Dim - 2][0];
   if (!(area > 0)) return false;
-  auto slanted = t;  // along the surface itself
+  auto tangent = t;  // tangents of the surface itself
   for (int a = 0; a < Dim - 1; ++a)
-    for (int d = 0; d < Dim; ++d) slanted[a][d] += fit.coefficient[1 + a][height] * n[d];
-  *B = kernels::project_surface<Dim>(kernels::inverse_in_plane<Dim>(slanted, G), n);
+    for (int d = 0; d < Dim; ++d) tangent[a][d] += fit.coefficient[1 + a][height] * n[d];
+  *B = kernels::project_surface<Dim>(kernels::inverse_in_plane<Dim>(tangent, G), n);
   return true;
 }
 
+// Computes B_s at the surface point nearest to a cell; false if the markers do not determine it.
 template <int Dim>
 EULASTIC_INLINE bool strain_at(const Sources &from, const int *marker_of, const SurfaceCells::Cell &cell, double *B) {
   constexpr int most = kernels::SurfacePoints<Dim>::most;
-  Seen seen[most];
-  const int count = look_around<Dim>(from, marker_of, cell, seen, most);
-  if (count < fewest<Dim>) return false;
-  const auto nearer = [](const Seen &a, const Seen &b) { return a.square < b.square; };
-  const SurfaceMarker &nearest = *std::min_element(seen, seen + count, nearer)->marker;
+  Neighbour neighbours[most];
+  const int count = find_neighbours<Dim>(from, marker_of, cell, neighbours, most);
+  if (count < least_count<Dim>) return false;
+  const auto nearer = [](const Neighbour &a, const Neighbour &b) { return a.square < b.square; };
+  const SurfaceMarker &nearest = *std::min_element(neighbours, neighbours + count, nearer)->marker;
   bool uniform = true;
   for (int m = 0; m < count; ++m)
     for (int q = 0; q < 6; ++q)
-      uniform = uniform && __builtin_fabs(seen[m].marker->metric[q] - nearest.metric[q]) < round_off;
+      uniform = uniform && __builtin_fabs(neighbours[m].marker->metric[q] - nearest.metric[q]) < round_off;
   const kernels::Vector<Dim> n = normal_of<Dim>(cell.normal);
   kernels::Tensor<Dim> strain;
-  const bool told = uniform ? strain_around<Dim, Dim + 1>(*from.box, n, seen, count, nearest, &strain)
-                            : strain_around<Dim, Dim + 7>(*from.box, n, seen, count, nearest, &strain);
-  if (!told) return false;
+  const bool is_found = uniform ? strain_around<Dim, Dim + 1>(*from.box, n, neighbours, count, nearest, &strain)
+                                : strain_around<Dim, Dim + 7>(*from.box, n, neighbours, count, nearest, &strain);
+  if (!is_found) return false;
   for (int a = 0; a < Dim; ++a)
     for (int b = a; b < Dim; ++b) B[kernels::position<Dim>(a, b)] = strain[a][b];
   return true;
@@ -368,8 +372,8 @@ EULASTIC_CLONES bool strain_3d(const Sources &from, const int *marker_of, const 
 
 }  // namespace
 
-// Those whose cell is one of the nearest or beside one, which every rank sees as far as it needs them. In an order that
-// is the same on any ranks.
+// Lists the markers whose cell is a nearest cell or beside one, which each rank knows as far as it needs them, in an
+// order that does not depend on the ranks.
 void SurfaceMarkers::sort(const SurfaceCells &surface, int phase) {
   const Layout &layout = box_->layout();
   near_.clear();
@@ -415,7 +419,7 @@ void SurfaceMarkers::find_strain(const SurfaceCells &surface, int phase, std::ve
   const int parts = row_parts(*box_);
   std::vector<std::vector<Strain>> found(parts);
   in_parallel(parts, parts, [&](int part) {
-    const Piece piece(surface.nearest(), part, parts);
+    const Piece piece(surface.nearest_count(), part, parts);
     for (std::size_t c = piece.begin; c < piece.end; ++c) {
       const SurfaceCells::Cell &cell = surface.all()[c];
       Strain strain{c, {}};

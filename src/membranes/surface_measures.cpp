@@ -13,16 +13,17 @@
 namespace eulastic {
 namespace {
 
-// Sums of one body: the weight delta h, its first and second moments in cells, momentum and v x, energies.
+// Sums of one body: the weight delta h, its first and second moments in cells, momentum, velocity times position,
+// energies.
 constexpr int weight = 0, first_moment = 1, second_moment = 4, momentum = 10, moment_of_velocity = 13, energies = 22;
 constexpr int area = 25, weight_at_rest = 26, all_sums = 27;
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
 using Matrix = std::array<Real3, 3>;
 
-// x M = C by Cholesky's decomposition; M is symmetric and not negative. False where it is singular.
+// Solves x M = C by Cholesky's decomposition of the symmetric, positive semidefinite M. Returns false if M is singular.
 bool divide(Matrix C, Matrix M, int dimension, Matrix *quotient) {
-  const PetscBLASInt n = dimension, stride = 3;  // LAPACK's columns are rows here
+  const PetscBLASInt n = dimension, stride = 3;  // LAPACK stores columns where Matrix has rows
   PetscBLASInt info;
   LAPACKpotrf_("L", &n, M[0].data(), &stride, &info);
   for (int p = 0; p < dimension; ++p)
@@ -51,7 +52,7 @@ double turning_rate(const BodySums &sums, int b, const Real3 &spacing, int dimen
   return square > 0 ? std::copysign(std::sqrt(square), yx - xy) * speed : 0;
 }
 
-// Of the surface of a labelled cell: its plane, or faces between full and empty cells.
+// Area of the surface in a labelled cell: that of its plane, or of faces between full and empty cells.
 template <int Dim>
 double area_of(ConstView phi, const double *q, const Real3 &h) {
   const std::ptrdiff_t stride[3] = {1, phi.sy, phi.sz};
@@ -64,7 +65,7 @@ double area_of(ConstView phi, const double *q, const Real3 &h) {
   return *q > 0 && *q < 1 ? kernels::plane_area<Dim>(q, stride, face) : sum;
 }
 
-// The largest of all samples.
+// Largest values over all samples, which scale the sums.
 struct Scales {
   double speed, shear, area, bending;
   explicit Scales(const std::vector<double> &v) : speed(v[0]), shear(v[1]), area(v[2]), bending(v[3]) {}
@@ -83,7 +84,7 @@ std::vector<double> largest_of(const std::vector<SurfaceSample> &samples, int di
 
 double scaled(double value, double scale) { return scale > 0 ? value / scale : 0; }
 
-// Of faces, in units of which areas are summed up.
+// Units in which areas are summed, from the smallest spacing.
 struct Units {
   double face = 0, area = 1;
   explicit Units(const Box &box) {
@@ -93,7 +94,7 @@ struct Units {
   }
 };
 
-// A sample at x cells from the reference of body b.
+// Adds a sample at x cells from the reference cell of body b.
 void add_sample(const SurfaceSample &s, int b, const Real3 &x, int dim, double face, const Scales &scale,
                 BodySums *sums) {
   const double w = s.delta * face;

@@ -1,4 +1,4 @@
-// What is known of the surface of every membrane: its area, energies, and how fast it goes round.
+// Measures of the surface of every membrane: area, energies, and rate of rotation.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -10,22 +10,22 @@
 namespace eulastic {
 
 struct SurfaceMeasure {
-  double area = 0;  ///< of the planes that transport cuts cells with; 2-D: length
+  double area = 0;  ///< of the planes by which transport cuts cells; 2-D: length
   double shear_energy = 0, area_energy = 0, bending_energy = 0;
-  /// Angular velocity at which material goes round in the xy plane, positive from x to y: the frequency of the linear
-  /// flow that is nearest to that of the surface; 0 where that only strains. Of tank-treading and tumbling alike,
-  /// whatever the shape.
+  /// Angular velocity at which material rotates in the xy plane, positive from x to y: the frequency of the linear flow
+  /// that is closest to the velocity of the surface, 0 where that flow only strains. It covers tank-treading and
+  /// tumbling, for any shape.
   double turning_rate = 0;
-  double area_strain = 0;      ///< mean, since the rest: area over that at rest, both from the strain, less 1
-  double largest_stretch = 1;  ///< principal stretch along the surface, at cells beside it
+  double area_strain = 0;      ///< area over undeformed area, both from the strain, minus 1; mean
+  double largest_stretch = 1;  ///< principal stretch along the surface in the cells beside it
 };
 
-/// Of the bodies that this rank owns; `references`: cells near the bodies that are here (BodyTracker::connect). One
-/// ghost of phi. Exact sums. Collective.
+/// Measures the bodies that this rank owns. `references`: reference cells of the bodies with cells on this rank
+/// (BodyTracker::connect). Reads one ghost of phi. Sums are exact. Collective.
 PetscErrorCode measure_surfaces(const Domain &domain, const std::vector<Phase> &phases,
                                 const std::vector<SurfaceSample> &samples, const BodyOwners &owners,
                                 const std::vector<Int3> &references, std::vector<SurfaceMeasure> *bodies);
-/// Of a body in a box of its own, from the samples at all its surface.
+/// Measures a body in a box of its own, from samples of its whole surface.
 SurfaceMeasure measure_surface_in_box(const BodyInBox &body, const std::vector<SurfaceSample> &samples);
 
 }  // namespace eulastic

@@ -12,21 +12,22 @@ namespace {
 
 constexpr double full = 1 - 1e-12;  // solid fraction of a cell inside a wall
 
-// The part of a face that a body covers, from its fractions on both sides: exact where the surface is parallel to the
-// face, at 45 degrees to it or normal to it.
+// Part of a face that a body covers, from phi on both sides: exact where the surface is parallel to the face, normal to
+// it, or at 45 degrees.
 double covered(double one, double other) {
-  const double less = std::sqrt(std::min(one, other)), lacks = std::sqrt(std::max(1 - std::max(one, other), 0.0));
-  return less > 0 ? less / (less + lacks) : 0;
+  const double root_less = std::sqrt(std::min(one, other)),
+               root_missing = std::sqrt(std::max(1 - std::max(one, other), 0.0));
+  return root_less > 0 ? root_less / (root_less + root_missing) : 0;
 }
 
-// Of the smoothed fraction of walls: 1 in the cells beside a flat wall, 0 in those behind them.
+// The function chi of the smoothed solid fraction of walls: 1 in the cells beside a flat wall, 0 in the next ones.
 double nearness(double smoothed) { return std::clamp(4 * smoothed - 0.25, 0.0, 1.0); }
 
 }  // namespace
 
 void WallFilm::find(const Box &box, const BoxSides &sides, const std::vector<ConstView> &rigid, Field &scratch) {
   const Layout &layout = box.layout();
-  const int dim = box.dimension(), reach = 1 + smooth_reach, deep = dim == 3 ? 1 : 0;
+  const int dim = box.dimension(), reach = 1 + smooth_reach, layers_z = dim == 3 ? 1 : 0;
   const View solid = scratch[0], near = scratch[1];
   const auto behind_wall = [&](int d, int i) {
     const int global = layout.begin[d] + i;
@@ -34,7 +35,7 @@ void WallFilm::find(const Box &box, const BoxSides &sides, const std::vector<Con
     return is_solid(sides[d][global >= 0].kind);
   };
   const Int3 &n = box.cells();
-  for (int k = -reach * deep; k < n[2] + reach * deep; ++k)
+  for (int k = -reach * layers_z; k < n[2] + reach * layers_z; ++k)
     for (int j = -reach; j < n[1] + reach; ++j)
       for (int i = -reach; i < n[0] + reach; ++i) {
         double sum = 0;
@@ -43,7 +44,7 @@ void WallFilm::find(const Box &box, const BoxSides &sides, const std::vector<Con
         solid(i, j, k) = wall ? 1 : std::min(sum, 1.0);
       }
   RowScratch row(box, 1);
-  for (int k = -deep; k < n[2] + deep; ++k)
+  for (int k = -layers_z; k < n[2] + layers_z; ++k)
     for (int j = -1; j < n[1] + 1; ++j) {
       smooth_row(dim, solid, j, k, -1, n[0] + 1, row.row(0), near.row(j, k));
       for (int i = -1; i < n[0] + 1; ++i) near(i, j, k) = nearness(near(i, j, k));
@@ -53,26 +54,26 @@ void WallFilm::find(const Box &box, const BoxSides &sides, const std::vector<Con
   cells_.clear();
   faces_.clear();
   for_points(box.rows(), [&](int i, int j, int k) {
-    const double *here = &near(i, j, k);
-    const std::ptrdiff_t at = here - near.origin;
-    if (*here > 0 && solid(i, j, k) < full) cells_.push_back({at, *here});
+    const double *centre = &near(i, j, k);
+    const std::ptrdiff_t at = centre - near.origin;
+    if (*centre > 0 && solid(i, j, k) < full) cells_.push_back({at, *centre});
     for (int a = 0; a < dim; ++a) {
       const std::ptrdiff_t s = near.stride(a);
       const bool on_side = box.is_wall(a) && layout.begin[a] + Int3{i, j, k}[a] == 0;
-      if (on_side || here[0] == here[-s]) continue;
-      const bool up = here[0] > here[-s];
-      faces_.push_back({a, at, up ? at : at - s, up ? at - s : at, (here[0] - here[-s]) / box.spacing()[a]});
+      if (on_side || centre[0] == centre[-s]) continue;
+      const bool up = centre[0] > centre[-s];
+      faces_.push_back({a, at, up ? at : at - s, up ? at - s : at, (centre[0] - centre[-s]) / box.spacing()[a]});
     }
   });
 }
 
-// Per volume.
+// Force per volume on a face, (27b).
 double WallFilm::force_on(const Face &face, double pressure, const double *phi) {
   const double beside = phi[face.near];
   return -pressure * beside * (covered(beside, phi[face.far]) - 0.5 * beside) * face.towards;
 }
 
-// As stiff as the step of the membrane allows.
+// The pressure P, as stiff as the time step of the membrane permits.
 double WallFilm::pressure_of(const Phase &phase) const {
   return phase.material.membrane.largest_modulus() / longest_spacing_;
 }

@@ -1,5 +1,5 @@
-// A film of fluid between membranes and walls: a short-range pressure on the part of a body that comes into the cells
-// beside a wall; docs/method.md, section 18 "Walls".
+// A film of fluid between membranes and walls: a short-range pressure acts on the part of a body that enters the cells
+// beside a wall; docs/method.md, section 18, "Walls", (27b).
 #pragma once
 
 #include "base/exact_sum.hpp"
@@ -10,21 +10,21 @@ namespace eulastic {
 
 class WallFilm {
 public:
-  static constexpr int work_fields = 2;  ///< scratch of find()
+  static constexpr int work_fields = 2;  ///< components of `scratch` in find()
 
-  /// Finds the cells and faces of a block beside walls: solid sides of the domain, and rigid bodies that do not travel,
-  /// of which `rigid` has the solid fractions with three ghosts; `scratch`: work_fields fields.
+  /// Finds the cells and faces of a block beside walls: solid boundaries of the domain and rigid bodies that do not
+  /// travel, whose solid fractions are `rigid`, with three ghosts. `scratch`: work_fields components.
   void find(const Box &box, const BoxSides &sides, const std::vector<ConstView> &rigid, Field &scratch);
-  /// Adds the force of the walls on the bodies of a membrane's phase; one ghost of phi.
+  /// Adds the force of the walls on the bodies of a membrane's phase. Reads one ghost of phi.
   void add_force(const Phase &phase, Field &force) const;
-  /// Adds, per cell volume, minus the power of that force and the energy that is stored in it.
+  /// Adds, divided by the cell volume, minus the power of the force and the energy stored in it.
   void add_energy(const Phase &phase, const Field &velocity, int power, int stored, ExactSums *sums) const;
 
 private:
   struct Face {
     int component;
-    std::ptrdiff_t at, near, far;  ///< offsets: the face, the cell nearer to the wall, the other one
-    double towards;                ///< slope of the nearness along the component, 1/length
+    std::ptrdiff_t at, near, far;  ///< offsets of the face, of the cell nearer to the wall, and of the other cell
+    double towards;                ///< difference of chi along the component, 1/length
   };
   struct Cell {
     std::ptrdiff_t at;

@@ -48,12 +48,14 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 4, MPI_INT, MPI_MAX, flow_.domain.comm()));
   const int held = found[0];
   if (held >= 0)
-    flow_.crowded = "-species " + flow_.now.phases[held / 6].species + ": solid within " + std::to_string(free_layers) +
-                    " cells of side " + side_name(held % 6 / 2, held % 2 != 0) +
-                    ", which volume crosses; accepted: bodies that stay further inside, or a longer box";
+    flow_.crowded = "-species " + flow_.now.phases[held / 6].species + ": a body is within " +
+                    std::to_string(free_layers) + " cells of the open boundary " +
+                    side_name(held % 6 / 2, held % 2 != 0) +
+                    "; accepted: bodies that stay further inside, or a longer box";
   if (held < 0 && found[3] > 0) PetscCall(take_out_boxed(leaving));
   if (held < 0 && found[1] > 0) PetscCall(take_out_bodies(true));
-  if (held < 0 && found[2] > 0 && flow_.now.travel == 0) PetscCall(take_out_bodies(false));  // labels are new
+  if (held < 0 && found[2] > 0 && flow_.now.travel_since_labels == 0)
+    PetscCall(take_out_bodies(false));  // labels are new
   PetscFunctionReturn(0);
 }
 

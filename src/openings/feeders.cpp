@@ -62,8 +62,9 @@ PetscErrorCode Feeders::check_lumen() const {
                              flow_.domain.comm()));
   for (std::size_t s = 0; s < stretches_.size(); ++s)
     if (change[s] > same)
-      flow_.crowded = "-inflow_" + side_name(stretches_[s].d, stretches_[s].high != 0) +
-                      "_feeder: rigid bodies change along it; accepted: a stretch along which the lumen is the same";
+      flow_.crowded =
+          "-boundary_" + side_name(stretches_[s].d, stretches_[s].high != 0) +
+          "_generator_length: the lumen changes along the inlet generator; accepted: a stretch with a constant lumen";
   PetscFunctionReturn(0);
 }
 

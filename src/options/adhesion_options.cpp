@@ -6,7 +6,7 @@ namespace {
 void add_region(Rows &rows, AdhesionPair &pair) {
   Option &region = rows.add(
       "region", "length",
-      "the box, by its low and high corner, in which a wall or the surface of a rigid or attached species is adhesive");
+      "the box, by its low and high corner, in which a wall or the surface of a rigid or anchored species is adhesive");
   region.accepted = several(6, "number", any_number);
   region.default_note = "everywhere";
   region.read = [&pair](const std::string &value) {

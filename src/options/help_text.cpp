@@ -4,14 +4,15 @@
 #include "io/option_values.hpp"
 #include "options/option_table.hpp"
 #include "options/petsc_options.hpp"
+#include "options/renamed_options.hpp"
 #include "options/unknown_option.hpp"
 
 #include <petscsys.h>
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <regex>
+#include <set>
 
 namespace eulastic {
 namespace {
@@ -21,9 +22,12 @@ const char *introduction =
     "(# begins a comment, \"...\" encloses a value with blanks). The command line overrides the environment variable\n"
     "PETSC_OPTIONS, which overrides the file; .petscrc is not read. The value none removes an option that the file "
     "sets;\n"
-    "an option of the file that no longer applies is dropped with a warning. Lists have commas and no spaces. Any\n"
-    "consistent set of units may be used. Wrong input ends the program with exit code 2, before anything is "
-    "written.\n";
+    "an option of the file that no longer applies is dropped with a warning. Lists have commas and no spaces. Where a\n"
+    "word such as auto, off or unlimited is accepted instead of a number > 0, the number 0 means the same. SIDE "
+    "stands\n"
+    "for xmin, xmax, ymin, ymax, zmin or zmax, NAME for a species. Any consistent set of units may be used. Wrong "
+    "input\n"
+    "ends the program with exit code 2, before anything is written.\n";
 
 // One species stands for all, and one pair of them.
 Config example() {
@@ -82,35 +86,25 @@ std::string description(const Option &option) {
          (option.unit.empty() ? "" : " [" + option.unit + "]") + "\n      " + option.accepted + "\n";
 }
 
-// The side that the name of an option says: xmin, ..., zmax; or nothing.
-std::string side_of(const std::string &name) {
-  static const std::regex side("_([xyz](min|max))(_|$)");
-  std::smatch found;
-  return std::regex_search(name, found, side) ? found[1].str() : "";
-}
-
 // SIDE in place of xmin, ..., zmax.
 std::string with_any_side(const std::string &text) {
-  static const std::regex side("_[xyz](min|max)(?![a-z])"), wall("-boundary_[xyz] wall or -boundary_SIDE wall");
-  return std::regex_replace(std::regex_replace(text, side, "_SIDE"), wall, "-boundary_SIDE wall");
+  static const std::regex side("_[xyz](min|max)(?![a-z])"), both(", or -boundary_[xyz] wall");
+  return std::regex_replace(std::regex_replace(text, side, "_SIDE"), both, "");
 }
 
-// Options that differ by their side only, or a single one.
-struct OptionsOfSides {
-  const Option *first;
-  std::vector<std::string> sides;
-};
-
-// Those whose description has `word`. Without a word all of them, each by itself.
-std::vector<OptionsOfSides> options_with(const std::string &word, const std::vector<Option> &table) {
-  std::vector<OptionsOfSides> found;
-  std::map<std::string, std::size_t> places;
-  for (const Option &option : table) {
+// The options whose description has `word`. Options that differ in the boundary only are one, with SIDE for it.
+std::vector<Option> options_with(const std::string &word) {
+  Config config = example();
+  std::vector<Option> found;
+  std::set<std::string> names;
+  for (Option &option : option_table(config)) {
     if (lower_case(description(option)).find(lower_case(word)) == std::string::npos) continue;
-    const std::string side = side_of(option.name), name = word.empty() ? option.name : with_any_side(option.name);
-    const auto [place, fresh] = places.emplace(name, found.size());
-    if (fresh) found.push_back({&option, {}});
-    if (!side.empty()) found[place->second].sides.push_back(side);
+    option.default_note = default_text(option);
+    option.required = false;
+    option.text = nullptr;  // of a Config that does not live on
+    option.name = with_any_side(option.name);
+    option.only_with = with_any_side(option.only_with);
+    if (names.insert(option.name).second) found.push_back(option);
   }
   return found;
 }
@@ -137,13 +131,11 @@ std::string help_text(const std::string &word) {
   if (word.empty())
     text = version_text() + "Soft bodies in incompressible flow on one fixed grid.\n\n" +
            "usage: eulastic [OPTIONS_FILE] [-name value ...]\n\n" + introduction;
-  Config config = example();
-  const std::vector<Option> table = option_table(config);
   std::string group;
-  for (const OptionsOfSides &found : options_with(word, table)) {
-    if (found.first->group != group) text += "\n" + (group = found.first->group) + "\n";
-    const std::string entry = description(*found.first);
-    text += found.sides.size() < 2 ? entry : with_any_side(entry) + "      SIDE: " + join(found.sides, ", ") + "\n";
+  for (const Option &option : options_with(word)) {
+    if (option.group != group) text += "\n" + (group = option.group) + "\n";
+    text += description(option);
+    if (option.name.find("SIDE") != std::string::npos) text += "      SIDE: xmin, xmax, ymin, ymax, zmin or zmax\n";
   }
   if (const std::string names = petsc_names(word); !names.empty())
     text += "\nPETSc's own options pass through: " + names + "\n";
@@ -157,16 +149,18 @@ std::string help_markdown() {
       "`eulastic -help markdown`; do not edit.\n\n";
   text += "    eulastic [OPTIONS_FILE] [-name value ...]\n\n";
   text += introduction;
-  Config config = example();
   std::string group;
-  for (const Option &option : option_table(config)) {
+  for (const Option &option : options_with("")) {
     if (option.group != group)
       text += "\n## " + (group = option.group) +
               "\n\n| option | default | meaning | unit | accepted |\n|---|---|---|---|---|\n";
     text += "| `-" + option.name + "` | " + default_text(option) + " | " + cell(remarks(option)) + " | " + option.unit +
             " | " + option.accepted + " |\n";
   }
-  return text + "\n## PETSc\n\nPETSc's own options pass through: `" + petsc_names() + "`\n";
+  text += "\n## PETSc\n\nPETSc's own options pass through: `" + petsc_names() + "`\n";
+  text += "\n## Former names\n\nThese names are refused with the present one.\n\n| former | present |\n|---|---|\n";
+  for (const auto &[former, now] : renamed_options()) text += "| `-" + former + "` | `-" + now + "` |\n";
+  return text;
 }
 
 std::string man_page() {
@@ -176,9 +170,8 @@ std::string man_page() {
                      ".B eulastic\n[\\fIOPTIONS_FILE\\fR] [\\fB\\-name\\fR \\fIvalue\\fR ...]\n.br\n" +
                      ".B mpiexec \\-n 4 eulastic\n[\\fIOPTIONS_FILE\\fR] [\\fB\\-name\\fR \\fIvalue\\fR ...]\n" +
                      ".SH DESCRIPTION\n" + troff(introduction) + ".SH OPTIONS\n";
-  Config config = example();
   std::string group;
-  for (const Option &option : option_table(config)) {
+  for (const Option &option : options_with("")) {
     if (option.group != group) text += ".SS " + troff(group = option.group) + "\n";
     const std::string value = default_text(option);
     text += ".TP\n\\fB" + troff("-" + option.name) + "\\fR" + (value.empty() ? "" : " (" + troff(value) + ")") + "\n" +

@@ -111,6 +111,17 @@ public:
     return row;
   }
 
+  /// Row r, or the last one, also accepts `word` for 0, and shows it.
+  void zero_is(const std::string &word, std::size_t r) {
+    Option &row = rows[r];
+    const std::size_t range = row.accepted.find(" >= 0");
+    if (range != std::string::npos) row.accepted.replace(range, 5, " > 0");
+    row.accepted = word + ", or " + row.accepted;
+    row.read = [read = row.read, word](const std::string &value) { return read(value == word ? "0" : value); };
+    row.text = [text = row.text, word] { return text() == "0" ? word : text(); };
+  }
+  void zero_is(const std::string &word) { zero_is(word, rows.size() - 1); }
+
   /// The rows from `first` on may differ between a checkpoint and the run that goes on from it.
   void allow_change(std::size_t first) {
     for (std::size_t r = first; r < rows.size(); ++r) rows[r].may_change = true;
@@ -134,13 +145,14 @@ public:
   }
 };
 
-void add_openings(Rows &rows, Config &config);
-
 /// Pairs that -adhesion names, of species that are known. Returns what is wrong, or nothing.
 std::string read_adhesion(const std::string &value, Config *config);
 void add_adhesion(Rows &rows, Config &config);
 
 /// The name of the species is the prefix. With `from_state` the shape need not be given.
 void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state);
+
+/// Kinds of all boundaries, and what is prescribed on them.
+void add_boundaries(Rows &rows, Config &config);
 
 }  // namespace eulastic

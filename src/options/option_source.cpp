@@ -98,7 +98,7 @@ std::string read_entries(const std::string &path, int depth, std::vector<Source>
   std::string text, line;
   if (depth > deepest || sources->size() >= most)
     return "-options_file: " + path +
-           " brings in itself, or too many files; accepted: files within files to a depth of " +
+           " includes itself, or too many files; accepted: files within files to a depth of " +
            std::to_string(deepest) + ", at most " + std::to_string(most) + " in all";
   if (!read_file(path, &text))
     return "options file " + path +

@@ -2,14 +2,13 @@
 
 #include "options/option_rows.hpp"
 #include "options/petsc_options.hpp"
+#include "options/renamed_options.hpp"
 
 #include <set>
 
 namespace eulastic {
 namespace {
 
-const Names boundary_names{"periodic", "wall", "symmetry"};
-const Names side_names{"same", "wall", "symmetry", "inflow", "pressure", "outflow"};
 const Names method_names{"fast", "classic"};
 
 void add_grid(Rows &rows, Config &config) {
@@ -17,38 +16,17 @@ void add_grid(Rows &rows, Config &config) {
   rows.integers("grid_cells", config.grid.cells.data(), 3, at_least_one,
                 "number of cells in x, y, z; 1 in z selects 2-D, where shapes ignore z");
   rows.real("grid_length", config.grid.length, positive, "length", "size of the box");
-  for (int d = 0; d < 3; ++d) {
-    const std::string name = std::string("boundary_") + "xyz"[d];
-    rows.choice(name, config.boundary.both[d], boundary_names, std::string("both boundaries in ") + "xyz"[d]);
-    for (int high = 0; high < 2; ++high)
-      rows.choice(name + (high ? "max" : "min"), config.boundary.side[d][high], side_names,
-                  "this boundary alone; same: as the option for both boundaries");
-  }
   const std::size_t processors = rows.rows.size();
-  for (int d = 0; d < 3; ++d)
+  for (int d = 0; d < 3; ++d) {
     rows.integers(std::string("da_processors_") + "xyz"[d], &config.grid.processors[d], 1, {0, false},
-                  std::string("ranks along ") + "xyz"[d] + "; 0 = automatic");
+                  std::string("ranks along ") + "xyz"[d]);
+    rows.zero_is("auto");
+  }
   rows.integers("threads", &config.threads, 1, {1, false, 1024},
                 "threads per rank; they share its planes of cells, in 2-D its rows, and its bodies in boxes");
-  rows.boolean("balance", config.balance,
+  rows.boolean("load_balance", config.balance,
                "load balance: cut y and z by the estimated cost of the cells, at the start and at restarts");
   rows.allow_change(processors);
-}
-
-void add_walls(Rows &rows, Config &config) {
-  rows.group = "Moving walls: U cos(frequency t + phase)";
-  for (int d = 0; d < 3; ++d)
-    for (int side = 0; side < 2; ++side) {
-      const std::string wall = "wall_" + side_name(d, side);
-      WallMotion &motion = config.sides[d][side].motion;
-      const std::size_t first = rows.rows.size();
-      rows.real(wall + "_velocity", motion.velocity, any_number, "length/time",
-                "velocity U of the wall; its normal component must be 0");
-      rows.real(wall + "_frequency", motion.frequency, not_negative, "1/time", "angular frequency");
-      rows.real(wall + "_phase", motion.phase, any_number, "rad", "phase");
-      rows.limit(first, std::string("-boundary_") + "xyz"[d] + " wall or -boundary_" + side_name(d, side) + " wall",
-                 [&config, d, side] { return config.boundary.is_wall(d, side); });
-    }
 }
 
 void add_flow(Rows &rows, Config &config) {
@@ -59,8 +37,8 @@ void add_flow(Rows &rows, Config &config) {
             "dynamic viscosity of the fluid, and of bodies without -NAME_viscosity");
   rows.boolean("fluid_inertia", fluid.inertia, "whether the momentum equation has the term v.grad v");
   rows.real("body_force", fluid.body_force.force, any_number, "length/time^2",
-            "force per mass F cos(frequency t + phase) on fluid and bodies");
-  rows.real("body_force_frequency", fluid.body_force.frequency, not_negative, "1/time", "angular frequency");
+            "force per mass F cos(angular_frequency t + phase) on fluid and bodies");
+  rows.real("body_force_angular_frequency", fluid.body_force.frequency, not_negative, "rad/time", "angular frequency");
   rows.real("body_force_phase", fluid.body_force.phase, any_number, "rad", "phase");
 
   rows.group = "Initial flow";
@@ -132,10 +110,10 @@ void add_method(Rows &rows, Config &config) {
               "artificial compressibility, the exact Poisson solution by FFT, or PETSc's by any -pressure_ksp_type and "
               "-pressure_pc_type");
   const std::size_t first = rows.rows.size();
-  rows.integers("acm_sweeps_max", &method.acm_sweeps_max, 1, at_least_one,
-                "largest number of pressure iterations (sweeps) per step");
+  rows.integers("acm_iterations_max", &method.acm_sweeps_max, 1, at_least_one,
+                "largest number of pressure iterations per step");
   rows.real("acm_tolerance", method.acm_tolerance, positive, "", "iterate until rms(div v) h/U is below this");
-  rows.integers("acm_memory", &method.acm_memory, 1, {0, false, 4},
+  rows.integers("acm_search_directions", &method.acm_memory, 1, {0, false, 4},
                 "number of increments of earlier steps that are used as search directions");
   rows.boolean("acm_coarse", method.acm_coarse, "precondition the iterations by a V-cycle over coarse grids");
   rows.restrict(first, "pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
@@ -183,7 +161,8 @@ void add_samples(Rows &rows, Config &config) {
   };
   for (int d = 0; d < 3; ++d) add_profile(rows, samples.profile[d], d);
   rows.real("profile_interval", samples.profile_interval, not_negative, "time",
-            "time between profiles, which are also written at the start and the end; 0 = only at the end");
+            "time between profiles, which are also written at the start and the end; off: only at the end");
+  rows.zero_is("off");
 }
 
 void add_output(Rows &rows, Config &config) {
@@ -194,7 +173,8 @@ void add_output(Rows &rows, Config &config) {
                "replace the run in -output_dir; accepted on the command line only")
       .command_line = true;
   rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
-            "time between snapshots, which are also written at the start and the end; 0 = none");
+            "time between snapshots, which are also written at the start and the end; off: no snapshots");
+  rows.zero_is("off");
   rows.choice(
       "snapshot_times", output.snapshot_exact, {"steps", "exact"},
       "steps: of the first step at or after each multiple of the interval; exact: interpolated to the multiple");
@@ -206,9 +186,9 @@ void add_output(Rows &rows, Config &config) {
       "snapshot_format", output.snapshot_vti, {"xdmf", "vti"},
       "xdmf: one index of all snapshots; vti: also a file for each that every version of VTK and ParaView reads, with "
       "the wall shear stress always");
-  rows.real("series_interval", output.series_interval, not_negative, "time",
-            "time between rows of series.csv; 0 = default")
-      .default_note = "time_end/200";
+  rows.real("series_interval", output.series_interval, not_negative, "time", "time between rows of series.csv");
+  rows.zero_is("auto");
+  rows.rows.back().default_note = "auto: time_end/200";
   add_samples(rows, config);
 }
 
@@ -217,21 +197,25 @@ void add_checkpoints(Rows &rows, Config &config) {
   CheckpointControl &checkpoint = config.checkpoint;
   const std::size_t regular = rows.rows.size();
   rows.real("checkpoint_interval", checkpoint.interval, not_negative, "time",
-            "simulated time between checkpoints; 0 = only by wall time and at the end");
+            "simulated time between checkpoints; off: only by wall time and at the end");
+  rows.zero_is("off");
   rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
-            "wall time between checkpoints; 0 = only by simulated time and at the end");
+            "wall time between checkpoints; off: only by simulated time and at the end");
+  rows.zero_is("off");
   rows.limit(regular, "-checkpoint_keep > 0", [&checkpoint] { return checkpoint.keep > 0; });
   rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
                "number of checkpoints that are kept; a complete run leaves one of its end, with 0 none");
   rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",
-            "wall time after which the run writes a checkpoint and ends; 0 = no limit");
+            "wall time after which the run writes a checkpoint and ends");
+  rows.zero_is("unlimited");
   rows.path(
       "restart", checkpoint.restart,
       "checkpoint, or output directory, whose newest intact one is used; in the same -output_dir files are continued");
 }
 
 void add_guards(Rows &rows, Config &config) {
-  rows.group = "Guards: bounds that stop the run; 0 = none";
+  rows.group = "Guards: bounds that stop the run";
+  const std::size_t first = rows.rows.size();
   GuardControl &guard = config.guard;
   rows.real("guard_cfl", guard.cfl, not_negative, "", "CFL number, the sum of max |v_i| dt/h_i");
   rows.real("guard_divergence", guard.divergence, not_negative, "", "rms(div v) h/U, as in series.csv");
@@ -243,13 +227,15 @@ void add_guards(Rows &rows, Config &config) {
       "energy made by the numerics within any time, relative to the energy held at its beginning and supplied since");
   rows.real("guard_memory", guard.memory, not_negative, "",
             "memory that the ranks of a node need, relative to its physical memory; checked before the start");
+  for (std::size_t r = first; r < rows.rows.size(); ++r) rows.zero_is("off", r);
 }
 
 void add_program(Rows &rows, Config &config) {
   rows.group = "Program";
   rows.boolean("check_only", config.check_only, "validate the case, print derived numbers and stop");
   rows.integers("ranks", &config.ranks, 1, {0, false, 1e8},
-                "number of ranks that -check_only assumes; 0 = those of mpiexec");
+                "number of ranks that -check_only assumes; auto: those of mpiexec");
+  rows.zero_is("auto");
   rows.boolean("print_options", config.print_options,
                "validate the case, print every option with its resolved value and stop");
   rows.add("options_file", "", "file of options to include; options of the including file override it").accepted =
@@ -266,8 +252,10 @@ void add_running(Rows &rows, Config &config) {
   const std::size_t first = rows.rows.size();
   rows.group = "Time";
   rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
-  rows.real("time_step", config.time.step, not_negative, "time", "time step; 0 = automatic");
-  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "largest number of steps; 0 = no limit");
+  rows.real("time_step", config.time.step, not_negative, "time", "time step; auto: the largest stable one");
+  rows.zero_is("auto");
+  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "largest number of steps");
+  rows.zero_is("unlimited");
   add_output(rows, config);
   add_checkpoints(rows, config);
   add_guards(rows, config);
@@ -287,8 +275,7 @@ std::string read_method(const std::string &value, Config *config) {
 std::vector<Option> option_table(Config &config) {
   Rows rows;
   add_grid(rows, config);
-  add_walls(rows, config);
-  add_openings(rows, config);
+  add_boundaries(rows, config);
   add_flow(rows, config);
   add_bodies(rows, config);
   add_adhesion(rows, config);
@@ -304,6 +291,8 @@ bool is_reserved_word(const std::string &word) {
     Config config;
     for (const Option &option : option_table(config)) set.insert(first(option.name));
     for (const std::string &name : petsc_option_names()) set.insert(first(name));
+    for (const RenamedOption &option : renamed_options()) set.insert(first(option.former));
+    set.erase("NAME");
     return set;
   }();
   return words.count(word) > 0;

@@ -135,7 +135,7 @@ public:
       if (given != given_.end() && !applies(option)) {
         if (!given->second.may_lose && given->second.says_nothing) continue;
         if (!given->second.may_lose)
-          return "-" + option.name + ": has a meaning only with " + option.only_with + given->second.where;
+          return "-" + option.name + ": applies only with " + option.only_with + given->second.where;
         lost->push_back({option.name, option.only_with, given->second.where});
       }
       if (given == given_.end() && applies(option) && option.required)
@@ -177,7 +177,7 @@ std::string check_petsc_entries(const std::vector<Source> &sources, const Config
     for (const Entry &entry : sources[s]) {
       if (is_pressure_ksp_option(entry.name) && config.method.pressure != PressureKind::ksp) {
         if (!had_ksp[s] || s + 1 == sources.size())
-          return "-" + entry.name + ": has a meaning only with " + needed + entry.where;
+          return "-" + entry.name + ": applies only with " + needed + entry.where;
         lost->push_back({entry.name, needed, entry.where});
       }
       if (const std::string wrong = check_petsc_value(entry.name, entry.value, config.output.directory); !wrong.empty())
@@ -225,8 +225,8 @@ void remove_lost(const std::vector<Lost> &lost, std::vector<Source> *sources, st
   std::map<std::string, std::vector<std::string>> groups;
   for (const Lost &one : lost) groups[one.only_with].push_back("-" + one.name + one.where);
   for (const auto &[only_with, names] : groups)
-    warnings->push_back(join(names, ", ") + ": dropped, as " + (names.size() > 1 ? "they have" : "it has") +
-                        " a meaning only with " + only_with);
+    warnings->push_back(join(names, ", ") + ": dropped, as " + (names.size() > 1 ? "they apply" : "it applies") +
+                        " only with " + only_with);
   for (Source &source : *sources)
     source.erase(std::remove_if(source.begin(), source.end(),
                                 [&](const Entry &entry) {
@@ -258,7 +258,7 @@ void leave_to_command_line(Source *source, std::vector<std::string> *warnings) {
     if (entry.name != "output_overwrite") return false;
     bool asked = true;
     (void)read_boolean(entry.value, &asked);
-    if (asked) warnings->push_back("-" + entry.name + ": counts only on the command line" + entry.where);
+    if (asked) warnings->push_back("-" + entry.name + ": applies only on the command line" + entry.where);
     return true;
   };
   source->erase(std::remove_if(source->begin(), source->end(), counts_elsewhere), source->end());

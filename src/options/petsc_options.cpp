@@ -115,7 +115,7 @@ PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string 
     PetscCallMPI(
         MPI_Allreduce(MPI_IN_PLACE, &unread, 1, MPI_INT, MPI_MIN, run_communicator()));  // some on one rank only
     if (!unread || !refusal->empty()) continue;
-    *refusal = "-" + name + ": unknown to PETSc, or to what it does here";
+    *refusal = "-" + name + ": is unknown to PETSc, or unused in this run";
     if (is_pressure_ksp_option(name)) *refusal += " (KSP and PC as chosen); -pressure_ksp_view shows them";
   }
   PetscFunctionReturn(0);

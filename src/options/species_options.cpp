@@ -23,10 +23,10 @@ void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
   rows.boolean("voxels_invert", voxels.invert, "exchange solid and fluid of the file, for a mask of a lumen");
 }
 
-void add_attached_row(Rows &rows, SpeciesSpec &spec) {
+void add_anchored_row(Rows &rows, SpeciesSpec &spec) {
   bool unused = false;
   Option &row = rows.boolean(
-      "attached", unused,
+      "anchored", unused,
       "whether the body is anchored, a wall that hardly moves (slab, tube, vessel): B is extrapolated linearly, with "
       "second order at rest");
   row.default_note = "true for slab and tubes, else false";
@@ -85,25 +85,9 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
   for_shapes(rows.rows.size() - voxels, {Shape::voxels});
 }
 
-void add_law(Rows &rows, SpeciesSpec &spec) {
-  const auto for_law = [&](std::size_t count, std::vector<Law> wanted) {
-    rows.restrict(rows.rows.size() - count, rows.prefix + "law", spec.law, law_names, std::move(wanted));
-  };
-  rows.choice(
-      "law", spec.law, law_names,
-      "constitutive law; neo_hookean: the deviator of G B; mooney_rivlin: that of 2 c1 B + 2 c2 (tr(B) B - B.B) + "
-      "4 c3 (tr B - 3) B; membrane: an elastic membrane around a fluid; red_cell: a membrane with the parameters of a "
-      "red blood cell in um, us and mPa s, -NAME_shape biconcave and -NAME_viscosity 6, which their options override");
-  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure", "shear modulus G; 0 = marked fluid")
-      .required = true;
-  for_law(1, {Law::neo_hookean});
-  rows.real("c1", spec.c1, not_negative, "pressure", "first coefficient; the shear modulus at rest is 2 (c1 + c2)")
-      .required = true;
-  rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
-  rows.real("c3", spec.c3, not_negative, "pressure",
-            "third coefficient, which stiffens the body with the square of the strain");
-  for_law(3, {Law::mooney_rivlin});
-  rows.choice("membrane", spec.membrane.law, membrane_names, "law of a membrane around a fluid");
+void add_membrane(Rows &rows, SpeciesSpec &spec) {
+  const std::size_t first = rows.rows.size();
+  rows.choice("membrane_law", spec.membrane.law, membrane_names, "law of a membrane around a fluid");
   rows.choice(
       "membrane_scheme", spec.membrane.scheme, membrane_scheme_names,
       "storage of the undeformed shape of a membrane: markers, material points on its surface; grid, the strain on the "
@@ -112,7 +96,7 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
             "shear modulus G_s of a membrane")
       .required = true;
   const std::size_t modulus = rows.rows.size();
-  rows.real("area_modulus", spec.membrane.area_modulus, not_negative, "",
+  rows.real("skalak_c", spec.membrane.area_modulus, not_negative, "",
             "C of Skalak's law: the modulus of area is (1 + 2 C) G_s; that of neo_hookean is 3 G_s");
   rows.real("initial_area_stretch", spec.membrane.initial_area_stretch, positive, "",
             "initial area of a membrane relative to its undeformed area");
@@ -123,24 +107,48 @@ void add_law(Rows &rows, SpeciesSpec &spec) {
             "c0 of the bending energy; a sphere of radius 2/c0, in 2-D a disc of radius 1/c0, has none");
   rows.real("stretch_force", spec.stretch_force.force, not_negative, "force",
             "force that pulls the two ends of every body apart along x, as optical tweezers do; 2-D: per depth");
-  rows.real("stretch_volume", spec.stretch_force.volume, {0, true, 0.5}, "",
+  rows.real("stretch_volume_fraction", spec.stretch_force.volume, {0, true, 0.5}, "",
             "share of the volume at each end on which -NAME_stretch_force acts; for a red cell the default is the "
             "outer half um");
-  for_law(9, {Law::membrane, Law::red_cell});
+  rows.restrict(first, rows.prefix + "law", spec.law, law_names, {Law::membrane, Law::red_cell});
   Option &area_modulus = rows.rows[modulus];
-  area_modulus.only_with = "-" + rows.prefix + "membrane skalak";
+  area_modulus.only_with = "-" + rows.prefix + "membrane_law skalak";
   area_modulus.applies = [&spec] { return spec.is_membrane() && spec.membrane.law == kernels::MembraneLaw::skalak; };
+}
+
+void add_law(Rows &rows, SpeciesSpec &spec) {
+  const auto for_law = [&](std::size_t count, std::vector<Law> wanted) {
+    rows.restrict(rows.rows.size() - count, rows.prefix + "law", spec.law, law_names, std::move(wanted));
+  };
+  rows.choice(
+      "law", spec.law, law_names,
+      "constitutive law; neo_hookean: the deviator of G B; mooney_rivlin: that of 2 c1 B + 2 c2 (tr(B) B - B.B) + "
+      "4 c3 (tr B - 3) B; membrane: an elastic membrane around a fluid; red_cell: a membrane with the parameters of a "
+      "red blood cell in um, us and mPa s, -NAME_shape biconcave and -NAME_viscosity 6, which their options override");
+  rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure",
+            "shear modulus G; 0: a fluid, which is tracked")
+      .required = true;
+  for_law(1, {Law::neo_hookean});
+  rows.real("c1", spec.c1, not_negative, "pressure", "first coefficient; the shear modulus at rest is 2 (c1 + c2)")
+      .required = true;
+  rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
+  rows.real("c3", spec.c3, not_negative, "pressure",
+            "third coefficient, which stiffens the body with the square of the strain");
+  for_law(3, {Law::mooney_rivlin});
+  add_membrane(rows, spec);
   const std::size_t first = rows.rows.size();
-  rows.real(
-      "velocity", spec.motion.velocity, any_number, "length/time",
-      "velocity V cos(frequency t + phase) of a rigid body, which moves through the grid (a slab along its axis, as a "
-      "piston) or slides along its own surface: tube and cylinder along the axis, slab in its plane");
-  rows.real("velocity_frequency", spec.motion.of_velocity.frequency, not_negative, "1/time", "angular frequency");
+  rows.real("velocity", spec.motion.velocity, any_number, "length/time",
+            "velocity V cos(angular_frequency t + phase) of a rigid body, which moves through the grid (a slab along "
+            "its axis, as a "
+            "piston) or slides along its own surface: tube and cylinder along the axis, slab in its plane");
+  rows.real("velocity_angular_frequency", spec.motion.of_velocity.frequency, not_negative, "rad/time",
+            "angular frequency");
   rows.real("velocity_phase", spec.motion.of_velocity.phase, any_number, "rad", "phase");
-  rows.real("angular_velocity", spec.motion.angular_velocity, any_number, "rad/time",
-            "angular velocity W cos(frequency t + phase) of a rigid body about its centre; a cylinder: about its "
-            "axis");
-  rows.real("angular_velocity_frequency", spec.motion.of_rotation.frequency, not_negative, "1/time",
+  rows.real(
+      "angular_velocity", spec.motion.angular_velocity, any_number, "rad/time",
+      "angular velocity W cos(angular_frequency t + phase) of a rigid body about its centre; a cylinder: about its "
+      "axis");
+  rows.real("angular_velocity_angular_frequency", spec.motion.of_rotation.frequency, not_negative, "rad/time",
             "angular frequency");
   rows.real("angular_velocity_phase", spec.motion.of_rotation.phase, any_number, "rad", "phase");
   for_law(rows.rows.size() - first, {Law::rigid});
@@ -166,8 +174,8 @@ void add_surface_tension(Rows &rows, SpeciesSpec &spec) {
 
 void add_body_force(Rows &rows, SpeciesSpec &spec) {
   rows.real("body_force", spec.body_force.force, any_number, "length/time^2",
-            "force per mass F cos(frequency t + phase) on the bodies of this species only");
-  rows.real("body_force_frequency", spec.body_force.frequency, not_negative, "1/time", "angular frequency");
+            "force per mass F cos(angular_frequency t + phase) on the bodies of this species only");
+  rows.real("body_force_angular_frequency", spec.body_force.frequency, not_negative, "rad/time", "angular frequency");
   rows.real("body_force_phase", spec.body_force.phase, any_number, "rad", "phase");
 }
 
@@ -284,7 +292,7 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
       "initial principal stretches l along the axes of the body, which -NAME_orientation rotates: B = R diag(l^2) R^T, "
       "for a membrane the part along its surface; the given shape is the stretched one");
   for_all_but_rigid(first);
-  add_attached_row(rows, spec);
+  add_anchored_row(rows, spec);
   first = rows.rows.size();
   add_contact(rows, spec);
   for_all_but_rigid(first);

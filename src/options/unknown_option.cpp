@@ -3,6 +3,7 @@
 #include "base/one_line.hpp"
 #include "io/option_values.hpp"
 #include "options/petsc_options.hpp"
+#include "options/renamed_options.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -63,7 +64,9 @@ std::string missing_species(const std::string &name) {
 std::string unknown_option(const std::string &name, const std::vector<Option> &table) {
   const std::string start = "unknown option -" + name, end = "; see -help";
   if (is_petsc_option("pressure_" + name)) return start + "; accepted with -pressure_solver ksp: -pressure_" + name;
-  const std::string plain = lower_case(name.substr(0, name.find('=')).substr(name[0] == '-'));
+  const std::string named = name.substr(0, name.find('=')).substr(name[0] == '-'), plain = lower_case(named);
+  if (const std::string now = present_name(named); !now.empty())
+    return start + ": it is now called -" + now + "; docs/options.md lists all former names";
   const Option *nearest = nullptr;
   std::size_t least = plain.size() / 2 + 1;  // further away it is another word
   for (const Option &option : table)
@@ -71,7 +74,7 @@ std::string unknown_option(const std::string &name, const std::vector<Option> &t
   if (nearest && least <= 2) return start + "; nearest known: -" + nearest->name + " (" + nearest->accepted + ")" + end;
   if (const std::string why = not_supported(plain); !why.empty()) return start + ": " + why;
   if (const std::string species = missing_species(name); !species.empty())
-    return start + ": -species names no " + species + end;
+    return start + ": -species does not list " + species + end;
   for (const std::string &petsc : petsc_option_names())
     if (petsc.back() != '_' && edit_distance(plain, petsc) <= 2) return start + "; nearest known: -" + petsc + end;
   if (nearest) return start + "; nearest known: -" + nearest->name + " (" + nearest->accepted + ")" + end;
@@ -122,12 +125,12 @@ const std::vector<std::pair<Words, std::string>> &missing() {
 // What there is under another name.
 const std::vector<std::pair<Words, std::string>> &called_otherwise() {
   static const std::vector<std::pair<Words, std::string>> table{
-      {{"inlet", "inlets"}, "is called inflow here: -boundary_xmin inflow with -inflow_xmin_velocity"},
+      {{"inlet", "inlets"}, "is called inflow here: -boundary_xmin inflow with -boundary_xmin_velocity"},
       {{"outlet", "outlets"},
        "is called outflow here, or pressure where the pressure is given: -boundary_xmax outflow, -boundary_xmax "
-       "pressure with -pressure_xmax_value"},
+       "pressure with -boundary_xmax_pressure"},
       {{"time_integrator"}, "is -method: fast is of second order in time, classic plain Euler"},
-      {{"skalak"}, "is a law of membranes: -NAME_law membrane with -NAME_membrane skalak"},
+      {{"skalak"}, "is a law of membranes: -NAME_law membrane with -NAME_membrane_law skalak"},
   };
   return table;
 }

@@ -80,14 +80,14 @@ std::string Outputs::strain_warning() {
   };
   if (once(m.red_cell_area, red_cell_bursts, &area_warned_)) {
     return print(
-        "t = %.9g: the area of red cell %d has grown by %.2g %%, above the %g %% at which its membrane bursts; a "
-        "weaker flow, or a larger -NAME_area_modulus",
+        "t = %.9g: the area of red cell %d has grown by %.2g %%, above the %g %% at which its membrane "
+        "bursts; use a weaker flow, or a larger -NAME_skalak_c",
         m.time, m.red_cell_area.label, 100 * m.red_cell_area.value, 100 * red_cell_bursts);
   }
   if (once(m.stretch, stretched, &stretch_warned_)) {
     return print(
-        "t = %.9g: body %d is stretched by a factor of %.3g, above %g: its strain is hard to resolve; more "
-        "-grid_cells, and look at the verdict at the end",
+        "t = %.9g: body %d is stretched by a factor of %.3g, above %g: its strain is hard to resolve; use "
+        "more -grid_cells, and read the verdict at the end",
         m.time, m.stretch.label, m.stretch.value, stretched);
   }
   return {};
@@ -101,7 +101,7 @@ PetscErrorCode Outputs::unresolved_bodies(std::string *line) const {
   *line = small == 0 ? ""
                      : "bodies of less than " + std::to_string(few_cells()) + " cells: " + std::to_string(small) +
                            " of " + std::to_string(solver_->bodies().bodies()) +
-                           "; hardly resolved, and -guard_volume_drift does not look at them; more -grid_cells";
+                           "; they are hardly resolved, and -guard_volume_drift ignores them; use more -grid_cells";
   PetscFunctionReturn(0);
 }
 

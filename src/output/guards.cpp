@@ -38,7 +38,7 @@ Stop crowded(const Solver &solver) {
 
 Guards::Guards(const Config &config) : control_(config.guard) {
   const PressureKind pressure = config.method.pressure;
-  pressure_advice_ = pressure == PressureKind::acm   ? "raise -acm_sweeps_max, lower -acm_tolerance or -time_step"
+  pressure_advice_ = pressure == PressureKind::acm   ? "raise -acm_iterations_max, lower -acm_tolerance or -time_step"
                      : pressure == PressureKind::ksp ? "lower -pressure_ksp_rtol or -time_step"
                                                      : "lower -time_step";
 }
@@ -84,7 +84,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   auto find = place_of_speed;
   if (beyond(m.energy_made, control_.energy_growth)) {
     what = print(
-        "the run has made energy of its own, %.3g of what it held and was supplied with meanwhile, above "
+        "the numerics have generated energy, %.3g of what the run held and was supplied with meanwhile, above "
         "-guard_energy_growth %g; lower -time_step (%.3g now), more -grid_cells, or -series_interval if rows are far "
         "apart",
         m.energy_made, control_.energy_growth, state.dt);
@@ -95,7 +95,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   } else if (beyond(m.mach, control_.mach)) {
     what = print(
         "Mach number |v|/beta = %.3g of artificial compressibility is above -guard_mach %g; lower -time_step "
-        "(%.3g now) or raise -acm_sweeps_max",
+        "(%.3g now) or raise -acm_iterations_max",
         m.mach, control_.mach, state.dt);
   } else if (beyond(m.resolved_drift, control_.volume_drift)) {
     what = print(
@@ -125,20 +125,20 @@ PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
 
 namespace {
 
-// value(i, j, k): of a cell, not negative.
+// Centre of the cell with the largest value(i, j, k) >= 0; the first one in the order of indices if there are several.
 template <class Value>
 PetscErrorCode largest(const Domain &domain, Value value, Real3 *place) {
   PetscFunctionBeginUser;
   const Int3 &begin = domain.layout().begin, &N = domain.domain_cells();
-  double most = -1, here = -1, first = std::numeric_limits<double>::infinity();
+  double most = -1, own = -1, first = std::numeric_limits<double>::infinity();
   for_points(domain.rows(), [&](int i, int j, int k) {
     const double q = value(i, j, k);
-    if (!(q > here)) return;
-    here = q;
+    if (!(q > own)) return;
+    own = q;
     first = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
   });
-  PetscCallMPI(MPI_Allreduce(&here, &most, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
-  if (here < most) first = std::numeric_limits<double>::infinity();
+  PetscCallMPI(MPI_Allreduce(&own, &most, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
+  if (own < most) first = std::numeric_limits<double>::infinity();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, domain.comm()));
   *place = std::isfinite(first) ? place_of_cell(domain, first) : Real3{};
   PetscFunctionReturn(0);

@@ -65,11 +65,11 @@ private:
   std::string pressure_advice_;
 };
 
-/// Collective. Centre of the cell with the largest sum |v_d|/h_d on its low faces; of several the first.
+/// Centre of the cell with the largest sum |v_d|/h_d on its low faces; the first one if there are several. Collective.
 PetscErrorCode place_of_speed(const Domain &domain, const Field &velocity, Real3 *place);
-/// Collective. Centre of the cell with the largest |div v|; of several the first. One ghost layer valid.
+/// Centre of the cell with the largest |div v|; the first one if there are several. Reads one ghost layer. Collective.
 PetscErrorCode place_of_divergence(const Domain &domain, const Field &velocity, Real3 *place);
-/// Centre of the cell with that index, counted along x, then y, then z.
+/// Centre of the cell with this index, counted along x, then y, then z.
 Real3 place_of_cell(const Box &box, double index);
 
 }  // namespace eulastic

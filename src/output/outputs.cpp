@@ -27,9 +27,10 @@ void Outputs::start(const Config &config, const Domain &domain, Solver *solver, 
   const double apart = std::max(config.output.series_interval, config.time.step);
   energy_unknown_.clear();
   if (4 * apart > solver->limits({}).forcing)
-    energy_unknown_ = "rows of series.csv are too far apart to see what swings; -series_interval: a quarter period";
+    energy_unknown_ =
+        "rows of series.csv are too far apart to resolve the oscillation; use a -series_interval of a quarter period";
   else if (has_feeders(config.sides) && !config.species.empty())
-    energy_unknown_ = "bodies that come in through a side bring energy that is not counted";
+    energy_unknown_ = "bodies that enter through a boundary carry energy that is not counted";
   mach_max_ = position.mach_max;
 }
 

@@ -4,6 +4,7 @@
 #include "base/rank_zero.hpp"
 #include "io/fail_together.hpp"
 #include "options/option_table.hpp"
+#include "options/renamed_options.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -17,11 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Words that options accept for 0 (Rows::zero_is).
+bool is_zero(const std::string &text) { return text == "0" || text == "auto" || text == "off" || text == "unlimited"; }
+
 struct Value {
   std::string text, content;  ///< the value, and of a file what it contains if that is known
   bool differs(const Value &other) const {
     const bool known = !content.empty() && !other.content.empty();
-    return known ? content != other.content : text != other.text;
+    return known ? content != other.content : text != other.text && !(is_zero(text) && is_zero(other.text));
   }
 };
 
@@ -34,6 +38,7 @@ std::map<std::string, Value> values_of(const std::string &options) {
     if (line.rfind(content_mark, 0) == 0 && !name.empty()) values[name].content = line.substr(content_mark.size());
     if (line[0] != '-' || space == std::string::npos) continue;
     name = line.substr(1, space - 1);
+    if (const std::string now = present_name(name); !now.empty()) name = now;
     values[name].text = line.substr(space + 1);
   }
   return values;
@@ -68,8 +73,7 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
   if (!refusal->empty()) PetscFunctionReturn(0);
   PetscCall(load_state(&file, path, solver, position));
   const std::string step = "time_step";
-  if (values_of(options)[step].text != values_of(options_text(parsed))[step].text)
-    position->dt = 0;  // chosen anew at once
+  if (values_of(options)[step].differs(values_of(options_text(parsed))[step])) position->dt = 0;  // chosen anew at once
   if (file.version() != EULASTIC_VERSION)
     (void)PetscFPrintf(
         solver->domain().comm(), stderr, "eulastic: warning: %s\n",
@@ -114,9 +118,9 @@ PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, dou
 
 std::string shorter_end(const Config &config, double held) {
   if (config.time.end >= held * (1 - 1e-12)) return {};
-  return print("-time_end: %.9g is before t = %.9g, to which the run in ", config.time.end, held) +
+  return print("-time_end: %.9g is before t = %.9g, which the run in ", config.time.end, held) +
          config.output.directory +
-         " has come; accepted: a later end, another -output_dir, or -output_overwrite to lose what comes after";
+         " has reached; accepted: a later end, another -output_dir, or -output_overwrite to discard what comes after";
 }
 
 std::string changed_option(const std::string &before, const ParseResult &now) {

@@ -290,7 +290,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
-  PetscCall(fail_together(domain.comm(), wrong ? path + ": " + wrong + " is of another scene" : std::string()));
+  PetscCall(fail_together(domain.comm(), wrong ? path + ": " + wrong + " belongs to another case" : std::string()));
   PetscCall(require_range(domain, path, find_absurd_number(numbers)));
   PetscCall(load_bodies(file, path, domain, &solver->bodies(), feeders));
   solver->clear_pressure_memory();  // the file may know of fewer increments

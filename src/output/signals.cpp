@@ -47,7 +47,7 @@ void end_now(int) { _exit(1); }
 void end_all(int signal) {
   char text[160];
   const int length = std::snprintf(
-      text, sizeof text, "eulastic: error: rank %d met signal %d (%s): a defect of the program or the machine\n",
+      text, sizeof text, "eulastic: error: rank %d received signal %d (%s): a defect of the program or the machine\n",
       own_rank, signal, signal == SIGSEGV ? "invalid memory" : sigabbrev_np(signal));
   (void)!::write(STDERR_FILENO, text, static_cast<std::size_t>(length));
   handle(SIGALRM, end_now, 0);

@@ -21,7 +21,7 @@ constexpr double many_steps = 1e9;
 std::string unresolved(const State &state) {
   return print(
       "t = %.9g: the grid does not resolve the strain of a body (det B > %g, or half of a membrane's area gone), "
-      "part of which is lost there; more -grid_cells",
+      "part of which is lost there; use more -grid_cells",
       state.time, largest_determinant);
 }
 
@@ -42,7 +42,7 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
     if (time_.step > 0) {
       dt_ = time_.step;
       if (const char *limit = limits.broken(dt_); limit && !warned_) {
-        *warning = print("-time_step %g is beyond the %s limit (automatic: %g)", dt_, limit, limits.automatic());
+        *warning = print("-time_step %g exceeds the %s limit (automatic: %g)", dt_, limit, limits.automatic());
       }
     } else {
       dt_ = limits.automatic();

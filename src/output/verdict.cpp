@@ -35,13 +35,13 @@ Summary::Verdict judge_energy(const Evidence &e) {
   if (!e.energy_unknown.empty()) return {of, look, e.energy_unknown};
   if (made > made_to_look || made != made)
     return {of, word(made, made_to_look, energy_not_to_trust),
-            "the run made energy of its own, " + percent(made) + all + " meanwhile"};
+            "the numerics generated energy, " + percent(made) + all + " meanwhile"};
   if (lost - uncertain > lost_to_look || lost != lost)
     return {of, word(lost - uncertain, lost_to_look, energy_not_to_trust), "the numerics lost " + percent(lost) + all};
   if (uncertain > rows_to_look)
     return {of, look,
             "rows of series.csv are too far apart to tell within " + percent(uncertain) + all +
-                "; a shorter -series_interval"};
+                "; use a shorter -series_interval"};
   return {of, fine,
           "the numerics " + (lost < 0 ? "made " + percent(-lost) : "lost " + percent(lost)) + all +
               (uncertain > 0.01 ? ", known within " + percent(uncertain) : "")};
@@ -66,7 +66,7 @@ Summary::Verdict judge_strain(const Evidence &e) {
   if (e.forgotten == 0) return {"strain", fine, "the grid resolved it everywhere"};
   const double share = over(e.forgotten, e.evolved);
   return {"strain", share > forgotten_not_to_trust ? do_not_trust : look,
-          "the grid did not resolve it at " + percent(share) + " of the points, where it was forgotten in part"};
+          "the grid did not resolve it at " + percent(share) + " of the points, where a part of it was lost"};
 }
 
 std::string verdict_line(const Summary::Verdict &v) { return v.of + ": " + v.verdict + " (" + v.why + ")"; }

@@ -24,7 +24,7 @@ PetscErrorCode Flow::carry(CarriedState *state) {
   state->add_velocity("advection", now.advection);
   state->reals["time"] = {&now.time};
   state->reals["time_step"] = {&now.dt};
-  state->reals["flow_scales"] = {&now.speed_scale, &now.crossing_rate, &now.travel};
+  state->reals["flow_scales"] = {&now.speed_scale, &now.crossing_rate, &now.travel_since_labels};
   if (now.pressure_before) state->reals["pressure_interval"] = {&now.pressure_interval};
   state->integers["step"] = {&now.step};
   if (now.forgotten > 0) state->integers["forgotten"] = {&now.forgotten};
@@ -84,14 +84,14 @@ PetscErrorCode Flow::settle(Phase *phase) {
 
 PetscErrorCode Flow::find_rows(Phase *phase) {
   PetscFunctionBeginUser;
-  constexpr double much = 0.25;
+  constexpr double large_share = 0.25;
   const int ghosts = domain.spec().ghosts;
   PetscCall(phase->rows.find(domain, phase->fraction[0]));
   PetscCall(exchange.update_ghosts(phase->fraction, ghosts, &phase->rows));
-  PetscCall(phase->rows.find(domain, phase->fraction[0]));  // with what others have
+  PetscCall(phase->rows.find(domain, phase->fraction[0]));  // now with the rows that other ranks occupy
   fill_wall_ghosts_even(domain, at_centre, phase->fraction[0], ghosts, &phase->rows);
   const Int3 &n = domain.cells();
-  if (double(phase->rows.cells()) > much * n[0] * n[1] * n[2])
+  if (double(phase->rows.cells()) > large_share * n[0] * n[1] * n[2])
     for (Field *block : {&phase->fraction, &phase->tensor.field, &next_fraction, &next_tensor})
       if (block != &phase->tensor.field || (phase->material.carries_tensor() && !phase->boxed)) block->leave_rest();
   PetscFunctionReturn(0);

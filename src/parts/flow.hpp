@@ -1,4 +1,4 @@
-// What all parts of a flow share: the grid, the scheme, the state and the memory that a step works in.
+// The data that all parts of a flow share: grid, method, state, and the memory of a step.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -34,53 +34,57 @@ struct Flow {
 
   const Domain &domain;
   SolverSpec spec;
-  const Fluid &fluid;  ///< of the spec
+  const Fluid &fluid;  ///< alias of spec.fluid
   GhostExchange exchange;
   WorkSpace work;
   State now;
   BodyTracker bodies;
-  /// The velocity that the projection makes solenoidal; after it that of the start of the step, without ghosts.
+  /// The velocity that the projection makes solenoidal. After the projection it holds the velocity at the start of the
+  /// step, without ghosts.
   Field velocity_star;
-  /// How forces per mass change in time, where that is followed within a step (Method::linear_force); else empty.
+  /// Rate of change of the forces per mass, if forces vary linearly within a step (Method::linear_force); else empty.
   Field slope;
-  /// With a slope: the memory of this velocity, of the slope and of velocity_star, whichever comes first and last.
+  /// If there is a slope: one allocation for State::velocity, slope and velocity_star. Swaps permute their order in it.
   Field memory;
-  /// What the fields of a phase are swapped with where its transport is not done in place; else empty.
+  /// Target fields that are swapped with those of a phase where its transport cannot work in place; else empty.
   Field next_fraction, next_tensor;
-  /// What the rigid bodies of the scene are to the flow, and what they see within a step; null: there are none.
+  /// Faces of the rigid bodies and their surface velocities within a step; null if the scene has no rigid bodies.
   const RigidFaces *rigid = nullptr;
   RigidMeans *rigid_means = nullptr;
-  std::string crowded;  ///< one line if bodies are where they cannot stay
+  std::string crowded;  ///< one line that says why bodies cannot stay where they are; empty if they can
   std::vector<FlowPart *> parts;
 
-  /// Memory of the slope and of velocity_star, which are idle between steps.
-  Field idle_memory(int components) {
+  /// Borrows the memory of slope and velocity_star, which hold nothing between steps.
+  Field borrow_idle_memory(int components) {
     return memory.part(velocity_star.data() == memory.data() ? 0 : domain.dimension(), components);
   }
-  /// All that is carried from one step to the next, but for the pressure solver's memory. Collective.
+  /// Lists everything that persists from one step to the next, except for the memory of the pressure solver.
+  /// Collective.
   PetscErrorCode carry(CarriedState *state);
+  /// Bytes of all fields of this rank, those of the parts and the work space included.
   std::size_t bytes() const;
   bool staggered() const { return spec.staggered(); }
-  /// Whether the phases live half a step behind the velocity.
+  /// Whether phases and pressure are half a step behind the velocity.
   bool is_behind() const { return staggered() && now.step > 0; }
-  /// Whether no wall holds the fluid, so that a net force would move all of it for ever.
+  /// Whether no wall resists the flow, so that a net force would accelerate all of it without bound.
   bool drifts() const;
   PhasePlace place_of_phases() { return {&domain, &spec.sides, &exchange}; }
-  /// The sides with the pressures that those with loads have now.
+  /// The boundaries with the present pressures of those that have loads.
   BoxSides sides_now() const;
-  /// Ghosts from other ranks and behind sides, of a velocity of `time` and of a field at centres.
+  /// Updates ghosts from other ranks and behind boundaries: of a velocity at `time`, and of a field at centres.
   PetscErrorCode update_velocity_ghosts(Field &velocity, double time, int width);
   PetscErrorCode update_centre_ghosts(Field &field, int width);
-  /// The fluid, driven by the largest forces that act anywhere in the box: that of its own, those of bodies, and what
-  /// differences of given pressures are to a fluid at rest.
+  /// The fluid with the largest forces per mass that act anywhere: its body force, those of bodies, and the
+  /// acceleration that differences between given boundary pressures cause in a fluid at rest.
   Fluid driven_fluid() const;
-  /// A velocity for tolerances in a step of dt: that of the flow; at rest what the force makes in a step, and never
-  /// less than a Courant number of 1e-6.
+  /// Velocity scale for tolerances in a step of dt: that of the flow, at least the velocity that the forces generate in
+  /// the step, and at least that of the Courant number 1e-6.
   double speed_scale(double dt) const;
-  /// Makes ghosts, rows and B outside the body consistent after owned cells of a phase have been set.
+  /// Rebuilds everything that follows from the owned cells of a phase (ghosts, occupied rows, B outside the body) after
+  /// they have been set.
   PetscErrorCode settle(Phase *phase);
-  /// The same of phi alone, and rows where there is nothing are left at rest. A phase that fills much of the grid has
-  /// nothing to rest from.
+  /// Finds the occupied rows of a phase and updates the ghosts of its phi. A phase that fills more than a quarter of
+  /// the grid moves to ordinary memory (Field::leave_rest).
   PetscErrorCode find_rows(Phase *phase);
 };
 

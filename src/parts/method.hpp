@@ -1,4 +1,4 @@
-// The two methods, and what may be changed in them.
+// The two methods and their options.
 #pragma once
 
 namespace eulastic {
@@ -10,29 +10,29 @@ enum class SolidExterior { extrapolate, identity };
 enum class ElasticForce { linear, constant };
 enum class PressureKind { acm, smac, ksp };
 
-/// The initialisers are the paper's method, of which only the pressure may be found in another way.
+/// The default values are the method of the paper, in which only the pressure solver may be replaced.
 struct Method {
   MethodKind kind = MethodKind::classic;
   ViscousScheme viscous = ViscousScheme::explicit_euler;
   InterfaceScheme interface = InterfaceScheme::weno5;
   SolidExterior exterior = SolidExterior::identity;
-  ElasticForce elastic_force = ElasticForce::constant;  ///< within a step
+  ElasticForce elastic_force = ElasticForce::constant;  ///< variation within a step
   PressureKind pressure = PressureKind::acm;
   int acm_sweeps_max = 1;
-  double acm_tolerance = 1e-7;  ///< on rms(div v) h/U
-  int acm_memory = 0;           ///< increments of earlier steps kept as directions
-  bool acm_coarse = false;      ///< sweep along a V-cycle of D, else along D
+  double acm_tolerance = 1e-7;  ///< bound of rms(div v) h/U
+  int acm_memory = 0;           ///< number of earlier increments kept as search directions
+  bool acm_coarse = false;      ///< search along a V-cycle of D, else along D
 
-  /// Whether bodies and pressure live half a step beside the velocity.
+  /// Whether bodies and pressure are half a step apart from the velocity.
   bool staggered() const { return kind == MethodKind::fast; }
   bool linear_force() const { return staggered() && elastic_force == ElasticForce::linear; }
-  /// Whether free bodies may lie in boxes of their own (boxes/free_bodies.hpp).
+  /// Whether free bodies may be stored in boxes of their own (boxes/free_bodies.hpp).
   bool boxes_bodies() const { return staggered() && interface == InterfaceScheme::plic; }
-  /// One step of (11)-(13) and nothing else.
+  /// Whether the pressure takes a single step of (11) to (13), as in the paper.
   bool acm_of_the_paper() const { return acm_sweeps_max == 1 && acm_memory == 0 && !acm_coarse; }
 };
 
-/// `-method classic` or `fast`.
+/// Default settings of `-method classic` or `fast`.
 inline Method method_preset(MethodKind kind) {
   Method method;
   if (kind == MethodKind::classic) return method;

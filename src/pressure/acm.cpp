@@ -45,7 +45,7 @@ EULASTIC_CLONES void add_sums_3d(const Box &box, const RowPart &part, ConstView 
   add_sums<3>(box, part, D, p, s);
 }
 
-// What the formula says, ghosts included.
+// Evaluates the formula for the increment in all cells, ghosts included.
 void increment_everywhere(const Box &box, const kernels::AcmIncrement &formula, const Field &divergence,
                           const Field &pressure, Field &increment) {
   in_row_parts(box, [&](const RowPart &owned) {

@@ -1,4 +1,4 @@
-// The paper's adaptive artificial compressibility method, one explicit step: (11), (12), (13).
+// The adaptive artificial compressibility method of the paper in a single explicit step: (11), (12), (13).
 #pragma once
 
 #include "base/petsc.hpp"
@@ -9,7 +9,7 @@
 
 namespace eulastic {
 
-/// kappa = beta^2 dt^2 and g = beta^2 dt^2 gamma: delta p = -(kappa D* + g p)/dt.
+/// Coefficients kappa = beta^2 dt^2 and g = beta^2 dt^2 gamma of delta p = -(kappa D* + g p)/dt.
 struct AcmCoefficients {
   double kappa = 0, g = 0;
   double sound_speed(double dt) const;  ///< beta
@@ -21,15 +21,15 @@ struct AcmSums {
   double A1, A2, A3, B1, B2;
 };
 
-/// (12): the least-squares minimum of <(D + kappa lap D + g lap p)^2>, with its guards: g = 0 where the minimum
-/// would be negative in kappa or g or where D and p are parallel; nothing to do where A2 = 0.
+/// (12): the minimum of <(D + kappa lap D + g lap p)^2>. g = 0 if kappa or g would be negative, or if D and p are
+/// parallel; both are 0 if A2 = 0.
 AcmCoefficients acm_coefficients(const AcmSums &sums);
 
 class AcmSolver : public PressureSolver {
 public:
   explicit AcmSolver(const Domain &domain) : domain_(&domain) {}
-  /// Finds formula() and fills no field; with an open side, where the increment is 0, it fills the increment, and
-  /// ghosts of the pressure behind sides are lost.
+  /// Computes formula() and fills no field. With an open boundary, where the increment is 0, it fills the increment
+  /// instead, and overwrites ghosts of the pressure behind boundaries.
   PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
   const AcmCoefficients &last() const { return last_; }
   const kernels::AcmIncrement *formula() const override { return domain_->any_open() ? nullptr : &formula_; }

@@ -11,7 +11,7 @@ namespace eulastic {
 PetscErrorCode AcmSweepSolver::create(const Domain &domain, GhostExchange &exchange, const AcmSweepOptions &options,
                                       WorkSpace &work) {
   PetscFunctionBeginUser;
-  PetscCheck(options.sweeps_max >= 1 && options.memory >= 0 && options.memory <= SweepSums::most, domain.comm(),
+  PetscCheck(options.sweeps_max >= 1 && options.memory >= 0 && options.memory <= LeastSquaresSums::most, domain.comm(),
              PETSC_ERR_ARG_OUTOFRANGE, "sweeps %d, memory %d", options.sweeps_max, options.memory);
   domain_ = &domain;
   exchange_ = &exchange;
@@ -31,13 +31,14 @@ std::size_t AcmSweepSolver::bytes() const {
   return memory_.bytes() + own_scratch_.bytes() + (multigrid_ ? multigrid_->bytes() : 0);
 }
 
-/// How far a solve has come.
+/// State of a solve.
 struct AcmSweepSolver::SolveState {
   double dt;
   Field &increment;
-  ConstView residual, before{};        // D of now and of a step earlier
-  bool recurs = false;                 // there is a d, and a D before
-  bool first = true, pending = false;  // nothing has set the increment; the last d is not in it yet
+  ConstView residual, before{};  // D and its value before the last iteration
+  bool with_previous = false;    // whether a previous direction exists
+  // `first`: the increment has not been set; `pending`: the last direction has not been added to it.
+  bool first = true, pending = false;
   bool done = false;
 };
 
@@ -54,9 +55,9 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const Field &divergence, Field &
     PetscCall(memory_.update_ghosts(*domain_, *exchange_));
     directions_.clear();
     for (int n = 0; n < memory_.count(); ++n) directions_.push_back(memory_.increment(n)[0]);
-    memory_.turn();
+    memory_.advance();
     sums_.start(*domain_, memory_.count());
-    PetscCall(sweep(false, state));
+    PetscCall(iterate(false, state));
   } else {
     for (const Segment &s : domain_->rows())
       std::copy_n(divergence[0].row(s.j, s.k), s.size(), residual_[0].row(s.j, s.k));
@@ -64,17 +65,17 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const Field &divergence, Field &
     fill_ghosts_of_increment(*domain_, residual_[0], 1);
     if (!multigrid_) sums_.start(*domain_, 1);
   }
-  Field correction = lease.part(3, 1), scratch;  // multigrid may swap them
+  Field correction = lease.part(3, 1), scratch;  // multigrid may swap the two
   if (multigrid_) scratch = memory_ ? memory_.increment(0) : own_scratch_.part(0, 1);
   for (int s = 1; s <= options_.sweeps_max && !state.done; ++s) {
     if (multigrid_) {
-      const SweepTask next{domain_, nullptr, 1, state.recurs, state.residual, state.before};
+      const IterationTask next{domain_, nullptr, 1, state.with_previous, state.residual, state.before};
       sums_.start(*domain_, next.directions());
       for (Field *field : {&residual_, &correction, &scratch})
         clear_open_ghosts(*domain_, (*field)[0], Multigrid::halo);
       PetscCall(multigrid_->apply(residual_, correction, scratch,
                                   [&](ConstView q, int thread, int j_begin, int j_end, int k) {
-                                    SweepTask rows = next;
+                                    IterationTask rows = next;
                                     rows.q = &q;
                                     sums_.add_inner(rows, thread, j_begin, j_end, k);
                                   }));
@@ -82,24 +83,25 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const Field &divergence, Field &
       scope.flops(multigrid_->flops());
     }
     directions_.assign(1, multigrid_ ? correction[0] : residual_[0]);
-    PetscCall(sweep(s == options_.sweeps_max, state));
+    PetscCall(iterate(s == options_.sweeps_max, state));
     ++sweeps_;
   }
   if (memory_) memory_.increment(0).copy_from(increment);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AcmSweepSolver::sweep(bool last, SolveState &state) {
+PetscErrorCode AcmSweepSolver::iterate(bool last, SolveState &state) {
   PetscFunctionBeginUser;
-  const SweepTask task{domain_,      directions_.data(), static_cast<int>(directions_.size()),
-                       state.recurs, state.residual,     state.before};
-  SweepMinimum minimum;
+  const IterationTask task{
+      domain_,        directions_.data(), static_cast<int>(directions_.size()), state.with_previous,
+      state.residual, state.before};
+  LeastSquaresSolution minimum;
   double mean = 0;
   PetscCall(sums_.find_minimum(task, &minimum, &mean));
   residual_rms_ = std::sqrt(minimum.square / domain_->domain_cell_count());
-  state.done = last || !(residual_rms_ > target_);  // NaN is done
+  state.done = last || !(residual_rms_ > target_);  // NaN ends the solve, too
   const int n = task.directions();
-  const double laplacians = task.stencils * (4 * domain_->dimension() + 1) + task.recurs;
+  const double laplacians = task.stencils * (4 * domain_->dimension() + 1) + task.with_previous;
   const double products = 2 + n + 0.5 * n * (n + 1);
   PetscCall(PetscLogFlops(domain_->cell_count() * (laplacians + 2 * products + 2 * n + 2)));
   const bool pending = state.pending;
@@ -108,30 +110,30 @@ PetscErrorCode AcmSweepSolver::sweep(bool last, SolveState &state) {
                                                 : (pending ? Increment::add_two : Increment::add);
   state.pending = how == Increment::later;
   if (!state.pending) state.first = false;
-  StepTask step{task,
-                minimum.coefficient,
-                minimum.coefficient[0] * mean,
-                1 / state.dt,
-                how,
-                state.done,
-                before_[0],
-                direction_[0],
-                state.increment[0],
-                {}};
+  UpdateTask step{task,
+                  minimum.coefficient,
+                  minimum.coefficient[0] * mean,
+                  1 / state.dt,
+                  how,
+                  state.done,
+                  before_[0],
+                  direction_[0],
+                  state.increment[0],
+                  {}};
   const ConstView D = step.new_residual;
-  const SweepTask next{domain_, &D, 1, true, D, task.residual};
+  const IterationTask next{domain_, &D, 1, true, D, task.residual};
   if (!multigrid_ && !state.done) {
     sums_.start(*domain_, next.directions());
     if (domain_->wraps_x())
       step.after = [&](int thread, int j_begin, int j_end, int k) { sums_.add_inner(next, thread, j_begin, j_end, k); };
   }
-  take_step(step);
+  update_fields(step);
   if (state.done) PetscFunctionReturn(0);
   PetscCall(PetscLogFlops(domain_->cell_count() * (laplacians + 2 * n)));
   residual_.swap(before_);
   state.before = task.residual;
   state.residual = D;
-  state.recurs = true;
+  state.with_previous = true;
   PetscCall(exchange_->update_ghosts(residual_, Multigrid::halo));
   fill_ghosts_of_increment(*domain_, residual_[0], 1);
   PetscFunctionReturn(0);

@@ -5,7 +5,7 @@
 namespace eulastic {
 namespace {
 
-// copy(values of the box, first of its cells in the field, number) for all rows of a box; local indices of `field`.
+// Calls copy(offset in the packed values, i, j, k, length) for all rows of a box, with local indices of the field.
 template <class F>
 void each_row(const CellBlock &box, const Int3 &field_begin, const F &copy) {
   const Int3 first{box.begin[0] - field_begin[0], box.begin[1] - field_begin[1], box.begin[2] - field_begin[2]};
@@ -35,7 +35,7 @@ PetscErrorCode Agglomeration::create(const Partition &from, const Partition &to)
   values_.resize(static_cast<std::size_t>(std::max(from.box().cell_count(), to.box().cell_count())));
   other_.resize(values_.size());
   if (!everywhere()) {
-    PetscCall(move_.create(from.comm(), CellBlocks(from.split()), CellBlocks(to.split())));
+    PetscCall(redistribution_.create(from.comm(), CellBlocks(from.split()), CellBlocks(to.split())));
     PetscFunctionReturn(0);
   }
   const CellBlocks blocks(from.split());
@@ -62,7 +62,7 @@ PetscErrorCode Agglomeration::forward(const Field &from, Field &to) {
       theirs += block.size();
     }
   } else {
-    PetscCall(move_.forward(values_, other_));
+    PetscCall(redistribution_.forward(values_, other_));
     unpack(values_.data(), owned(to), to);
   }
   PetscFunctionReturn(0);
@@ -72,7 +72,7 @@ PetscErrorCode Agglomeration::backward(const Field &to, Field &from) {
   PetscFunctionBeginUser;
   const CellBlock mine = owned(from);
   pack(to, everywhere() ? mine : owned(to), values_.data());
-  if (!everywhere()) PetscCall(move_.backward(values_, other_));
+  if (!everywhere()) PetscCall(redistribution_.backward(values_, other_));
   unpack(values_.data(), mine, from);
   PetscFunctionReturn(0);
 }

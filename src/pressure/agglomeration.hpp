@@ -1,5 +1,4 @@
-// The same cells on other ranks: from all that share a level of the V-cycle to some of them, or to every rank, and
-// back.
+// Transfer of the cells of a multigrid level from all ranks that share it to some of them, or to every rank, and back.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,9 +10,10 @@ namespace eulastic {
 
 class Agglomeration {
 public:
-  /// Collective. `to` has the same cells: Partition::joined or everywhere. Both must outlive this.
+  /// Prepares the transfer. `to` has the same cells: Partition::joined() or everywhere(). Both must outlive this.
+  /// Collective.
   PetscErrorCode create(const Partition &from, const Partition &to);
-  /// Owned values of one field; ghosts are not touched. Collective.
+  /// Transfers the owned values of one field. Ghosts are not changed. Collective.
   PetscErrorCode forward(const Field &from, Field &to);
   PetscErrorCode backward(const Field &to, Field &from);
 
@@ -21,10 +21,10 @@ private:
   bool everywhere() const { return to_->ranks() < from_->ranks(); }
 
   const Partition *from_ = nullptr, *to_ = nullptr;
-  Redistribution move_;                      ///< unless everywhere()
-  std::vector<double> values_, other_;       ///< blocks, one after the other
-  std::vector<CellBlock> blocks_;            ///< everywhere(): of all ranks that have cells, in the order of ranks
-  std::vector<int> counts_, displacements_;  ///< everywhere(): of all ranks
+  Redistribution redistribution_;            ///< not used if everywhere()
+  std::vector<double> values_, other_;       ///< packed blocks
+  std::vector<CellBlock> blocks_;            ///< if everywhere(): blocks of all ranks with cells, in the order of ranks
+  std::vector<int> counts_, displacements_;  ///< if everywhere(): of all ranks
 };
 
 }  // namespace eulastic

@@ -34,11 +34,11 @@ PetscErrorCode IncrementMemory::update_ghosts(const Box &box, GhostExchange &exc
   PetscFunctionReturn(0);
 }
 
-// Cholesky's decomposition of the Gram matrix, row by row, passing over rows that add nothing.
-SweepMinimum minimise(const SweepSums &s) {
+// Cholesky decomposition of the Gram matrix, row by row, omitting dependent rows.
+LeastSquaresSolution minimise(const LeastSquaresSums &s) {
   constexpr double parallel = 1e-12, rounding = 1e-14;
-  constexpr int most = SweepSums::most;
-  SweepMinimum minimum;
+  constexpr int most = LeastSquaresSums::most;
+  LeastSquaresSolution minimum;
   double lower[most][most] = {}, y[most] = {};
   bool used[most] = {};
   double gain = 0;
@@ -52,7 +52,7 @@ SweepMinimum minimise(const SweepSums &s) {
       pivot -= lower[i][j] * lower[i][j];
       right -= lower[i][j] * y[j];
     }
-    used[i] = !(pivot <= parallel * s.product[i][i]);  // NaN passes and spreads
+    used[i] = !(pivot <= parallel * s.product[i][i]);  // NaN is used and propagates
     if (!used[i]) {
       std::fill_n(lower[i], most, 0.0);
       continue;

@@ -12,16 +12,16 @@ namespace {
 
 constexpr double relative_tolerance = 1e-10;
 constexpr int most_iterations = 1000;
-constexpr int fewest_levels = 3;     // of the geometric preset
-constexpr double dense_cells = 512;  // the largest coarsest grid that is solved by singular values
+constexpr int fewest_levels = 3;     // of geometric multigrid
+constexpr double dense_cells = 512;  // largest coarsest grid that is solved by singular values
 
 double shortest(const Box &box) {
   const Real3 &h = box.spacing();
   return *std::min_element(h.begin(), h.begin() + box.dimension());
 }
 
-// A in A q = b: minus the Laplacian times the cell volume, on the cells of any level. In units of V/h^2 (V the volume,
-// h the shortest side of the finest cells), so that PETSc's absolute thresholds know no length.
+// Assembles A of A q = b on the cells of any level: minus the Laplacian times the cell volume, in units of V/h^2 (V the
+// volume, h the shortest side of the finest cells), so that PETSc's absolute thresholds do not depend on the units.
 PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
   const Domain &domain = *static_cast<const Domain *>(context);
   DM dm;
@@ -46,10 +46,10 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
         double value[7] = {};
         PetscInt count = 1;
         for (int d = 0; d < domain.dimension(); ++d)
-          for (const PetscInt way : {-1, 1}) {
-            const PetscInt other = cell[d] + way;
+          for (const PetscInt side : {-1, 1}) {
+            const PetscInt other = cell[d] + side;
             if (domain.is_wall(d) && (other < 0 || other >= cells[d])) {
-              if (domain.is_open(d, way > 0)) value[0] += 2 * volume * coupling[d];  // 0 half a cell away
+              if (domain.is_open(d, side > 0)) value[0] += 2 * volume * coupling[d];  // the value is 0 half a cell away
               continue;
             }
             column[count] = row;
@@ -57,7 +57,8 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
             value[count++] = -volume * coupling[d];
             value[0] += volume * coupling[d];
           }
-        // Added: of two cells around a periodic direction each is the other's neighbour on both sides.
+        // Values are added, because with two cells around a periodic direction each is the other's neighbour on both
+        // sides.
         PetscCall(MatSetValuesStencil(matrix, 1, &row, count, column, value, ADD_VALUES));
       }
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
@@ -68,8 +69,8 @@ PetscErrorCode assemble(KSP ksp, Mat, Mat matrix, void *context) {
   PetscFunctionReturn(0);
 }
 
-// Beyond this ratio of spacings halving all directions alike converges badly (29 iterations at 2, 57 at 4): GAMG,
-// which coarsens along the strong couplings only.
+// Beyond this ratio of spacings, halving all directions converges slowly (29 iterations at 2, 57 at 4). GAMG is used
+// instead, which coarsens only along strong couplings.
 constexpr double about_equal = 1.5;
 
 bool about_equal_spacing(const Box &box) {
@@ -77,8 +78,8 @@ bool about_equal_spacing(const Box &box) {
   return *std::max_element(h.begin(), h.begin() + box.dimension()) <= about_equal * shortest(box);
 }
 
-// Grids, while every direction can be halved and leaves every rank a cell; and the cells of the coarsest. Where ranks
-// are not even, PETSc moves both ends of a coarse one by up to a cell.
+// Number of levels, as long as every direction can be halved and every rank keeps a cell, and the number of cells of
+// the coarsest. With uneven ranks, PETSc moves both ends of a coarse block by up to a cell.
 int geometric_levels(const Domain &domain, double *coarsest) {
   const int least = domain.spec().starts[0].empty() ? 1 : 3;
   Int3 cells = domain.domain_cells(), narrowest = cells;
@@ -93,13 +94,14 @@ int geometric_levels(const Domain &domain, double *coarsest) {
   return levels;
 }
 
+// An error handler that stores the message of the first error.
 PetscErrorCode keep_first(MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type,
                           const char *message, void *text) {
   if (type == PETSC_ERROR_INITIAL && message) *static_cast<std::string *>(text) = message;
   return code;
 }
 
-// Wrong values are the user's, and the same on all ranks.
+// Reports an invalid value of an option with PETSc's message; it is the same on all ranks.
 PetscErrorCode set_from_options(KSP ksp) {
   std::string wrong;
   PetscFunctionBeginUser;
@@ -139,7 +141,8 @@ PetscErrorCode KspSolver::set_preset() {
   KSP level;
   PetscFunctionBeginUser;
   PetscCall(KSPSetType(ksp_.get(), KSPCG));
-  PetscCall(KSPSetSupportedNorm(ksp_.get(), KSP_NORM_UNPRECONDITIONED, PC_LEFT, 4));  // that of div v: preferred
+  // Preferred, since it is that of div v.
+  PetscCall(KSPSetSupportedNorm(ksp_.get(), KSP_NORM_UNPRECONDITIONED, PC_LEFT, 4));
   PetscCall(KSPSetTolerances(ksp_.get(), relative_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
   PetscCall(KSPGetPC(ksp_.get(), &pc));
   if (levels < fewest_levels || !about_equal_spacing(*domain_)) {
@@ -176,7 +179,7 @@ PetscErrorCode KspSolver::solve(double dt, const Field &divergence, Field &, Fie
   PetscCall(VecShift(rhs_.get(), -mean));
   PetscCall(VecScale(rhs_.get(), factor));
   PetscCall(VecNorm(rhs_.get(), NORM_2, &rest));
-  // D is a constant, but for the rounding of its mean: no increment removes it.
+  // D is constant up to the rounding of its mean, so that no increment can reduce it.
   if (rest <= 1e-15 * std::abs(factor * mean) * std::sqrt(domain_->domain_cell_count()))
     PetscCall(VecSet(solution_.get(), 0));
   else if (!std::isfinite(rest))

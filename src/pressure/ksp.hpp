@@ -1,7 +1,8 @@
-// The Poisson equation (10) handed to PETSc: any KSP and PC by -pressure_ksp_* and -pressure_pc_*.
+// The Poisson equation (10) solved by PETSc with any KSP and PC, set by -pressure_ksp_* and -pressure_pc_*.
 //
-// Preset: conjugate gradients to a relative residual of 1e-10 with one multigrid cycle, geometric (piecewise constant
-// transfer, Chebyshev with Jacobi) where cells of about equal sides can be halved twice, else algebraic (GAMG).
+// Default: conjugate gradients to a relative residual of 1e-10, preconditioned by one multigrid cycle. It is geometric
+// (piecewise constant transfer, Chebyshev smoothing with Jacobi) if the spacings are about equal and all cells can be
+// halved twice, else algebraic (GAMG).
 #pragma once
 
 #include "field/ghost_exchange.hpp"
@@ -16,14 +17,14 @@ using KspHandle = Handle<KSP, KSPDestroy>;
 
 class KspSolver final : public PressureSolver {
 public:
-  /// Collective; `grid` and `exchange` must outlive the solver. Everything is set up here, so that afterwards PETSc
-  /// can tell which options it has read. Fails with PETSC_ERR_USER_INPUT and PETSc's message where it cannot take the
-  /// value of an option.
+  /// Creates and sets up the solver, so that PETSc knows afterwards which options have been read. `domain` and
+  /// `exchange` must outlive it. Fails with PETSC_ERR_USER_INPUT and PETSc's message if the value of an option is
+  /// invalid. Collective.
   PetscErrorCode create(const Domain &domain, GhostExchange &exchange);
 
-  /// The increment with lap(increment) = (divergence - its mean) / dt, up to the tolerance of the KSP on rms(D); its
-  /// mean is 0 to round-off. All NaN if D is not finite. Fails if the KSP does not converge. Leaves `pressure` alone.
-  /// Sums are MPI's: the bits depend on the ranks.
+  /// Solves lap(increment) = (divergence - its mean) / dt up to the tolerance of the KSP on rms(D). The mean of the
+  /// increment is 0 to round-off. The increment is NaN if D is not finite. Fails if the KSP does not converge. Does not
+  /// change `pressure`. Sums are those of MPI, so that the bits depend on the ranks.
   PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
   long sweeps() const override { return iterations_; }
   KSP ksp() const { return ksp_.get(); }

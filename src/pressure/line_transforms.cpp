@@ -17,7 +17,7 @@ PetscErrorCode LineTransform::create(Boundary boundary, int cells, std::array<bo
   open_ = open;
   cells_ = cells;
   pitch_ = (cells + 7) / 8 * 8;
-  if (pitch_ % 512 == 0) pitch_ += 8;  // eight lines 4 KiB apart would share their cache sets
+  if (pitch_ % 512 == 0) pitch_ += 8;  // lines that are multiples of 4 KiB apart would share cache sets
   const std::size_t size = std::size_t(batch) * pitch_;
   in_.reset(fftw_alloc_real(size));
   out_.reset(fftw_alloc_real(size));
@@ -39,7 +39,7 @@ PetscErrorCode LineTransform::create(Boundary boundary, int cells, std::array<bo
 }
 
 double LineTransform::stiffness(int m) const {
-  // Half-complex order keeps cosine m at m and sine m at N - m: the formula gives both the same.
+  // In half-complex order cosine m is at m and sine m at N - m; the formula gives both the same value.
   const double waves = open_[0] != open_[1] ? m + 0.5 : open_[0] ? m + 1 : m;
   const double sine = std::sin(M_PI * waves / (boundary_ == Boundary::periodic ? cells_ : 2.0 * cells_));
   return 4 * sine * sine;
@@ -58,13 +58,13 @@ void LineTransform::apply(const Plan &plan, double *data, std::ptrdiff_t lines, 
   for (std::ptrdiff_t first = 0; first < lines; first += batch) {
     const int n = static_cast<int>(std::min<std::ptrdiff_t>(batch, lines - first));
     double *block = data + first * distance;
-    // Unit stride on the side of the field, whichever way the lines run.
+    // Access the field with unit stride, whichever direction the lines have.
     if (stride == 1)
       for (int l = 0; l < n; ++l) std::copy_n(block + l * distance, cells_, in_.get() + l * pitch_);
     else
       for (int m = 0; m < cells_; ++m)
         for (int l = 0; l < n; ++l) in_[l * pitch_ + m] = block[l * distance + m * stride];
-    // The input of the last batch is destroyed; transformed again and again it would overflow.
+    // FFTW destroys its input. Clear the unused part, which would overflow if it were transformed repeatedly.
     std::fill_n(in_.get() + n * pitch_, (batch - n) * pitch_, 0.0);
     fftw_execute(plan.get());
     if (stride == 1)

@@ -1,6 +1,6 @@
-// The real transforms that make the second difference along a line diagonal, by FFTW (Frigo and Johnson, Proc. IEEE 93,
-// 2005): R2HC (periodic); DCT-II and DCT-III between two closed sides (even about the face), DST-II and DST-III between
-// two open ones (odd about it), DCT-IV or DST-IV, which are their own inverses, between one of each.
+// Real transforms that diagonalise the second difference along a line, by FFTW (Frigo and Johnson, Proc. IEEE 93,
+// 2005): R2HC if periodic; DCT-II and DCT-III between two closed boundaries (even about the face), DST-II and DST-III
+// between two open ones (odd about it), and DCT-IV or DST-IV, which are their own inverses, between one of each.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -12,22 +12,22 @@ struct fftw_plan_s;
 
 namespace eulastic {
 
-/// Transforms lines in batches of one fixed size through aligned scratch of its own. Plans are estimated, so that a
-/// line comes out with the same bits whatever its place in a batch and whichever rank transforms it.
+/// Transforms lines in batches of fixed size in aligned scratch. Plans are estimated, so that the bits of a line depend
+/// neither on its position in a batch nor on the rank.
 class LineTransform {
 public:
   static constexpr int batch = 8;
 
-  /// `open`: the low and the high side, where there are any.
+  /// `open`: whether the low and the high boundary are open, if not periodic.
   PetscErrorCode create(Boundary boundary, int cells, std::array<bool, 2> open = {});
-  /// Value m of a transformed line belongs to the second difference q(i-1) - 2 q(i) + q(i+1) = -stiffness(m) q(i).
+  /// The eigenvalue of value m of a transformed line: q(i-1) - 2 q(i) + q(i+1) = -stiffness(m) q(i).
   double stiffness(int m) const;
-  /// `backward` after `forward` multiplies by this.
+  /// Factor by which forward() followed by backward() multiplies a line.
   double gain() const { return boundary_ == Boundary::periodic ? cells_ : 2.0 * cells_; }
-  /// In place; value m of line l is data[l distance + m stride].
+  /// Transform in place; value m of line l is data[l distance + m stride].
   void forward(double *data, std::ptrdiff_t lines, std::ptrdiff_t distance, std::ptrdiff_t stride);
   void backward(double *data, std::ptrdiff_t lines, std::ptrdiff_t distance, std::ptrdiff_t stride);
-  /// Of one transform of one line, forward or backward.
+  /// Flops of one transform of one line, forward or backward.
   double flops_per_line() const { return flops_ / batch; }
 
 private:

@@ -9,8 +9,9 @@
 
 namespace eulastic {
 
-// Factors of the relaxations' steps, times MultigridLevel::step(). The eigenvalues of -lap step() end at 2; the steps
-// together are small between 1/3 (1/2 in 2-D), where the coarse grid stops helping, and 2. Coarse levels cost little.
+// Steps of the relaxations in units of MultigridLevel::step(). The eigenvalues of -lap step() are at most 2; the
+// combined amplification is small from 1/3 (2-D: 1/2), where the coarse grid becomes ineffective, to 2. Coarse levels
+// have more relaxations, because these cost little.
 struct Multigrid::Relaxations {
   double before;
   std::vector<double> after;
@@ -19,7 +20,8 @@ struct Multigrid::Relaxations {
 namespace {
 
 const Multigrid::Relaxations on_finest{0.7, {0.57, 1.5}}, on_coarse{0.8, {0.54, 0.8, 1.6}};
-constexpr double gathered_cells = 4096;  // from here on messages cost more than cells
+// Levels of at most this size are gathered, because messages cost more than cells.
+constexpr double gathered_cells = 4096;
 
 std::unique_ptr<MultigridLevel> finest(const Domain &domain) {
   MultigridLevel::Widths equal;
@@ -27,9 +29,9 @@ std::unique_ptr<MultigridLevel> finest(const Domain &domain) {
   return std::make_unique<MultigridLevel>(Partition(domain), equal, domain.spacing());
 }
 
-// Half the cells; or the same on every rank, where they are few, or on fewer ranks, where half of them are too few for
-// one.
-std::unique_ptr<MultigridLevel> after(const MultigridLevel &fine) {
+// The level after `fine`: half the cells; or the same cells on every rank if there are few of them; or the same cells
+// on fewer ranks if half of them would be too few for a rank.
+std::unique_ptr<MultigridLevel> next_level(const MultigridLevel &fine) {
   std::unique_ptr<MultigridLevel> next = fine.coarser();
   if (fine.partition().ranks() == 1) return next;
   if (fine.box().domain_cell_count() <= gathered_cells) return fine.everywhere();
@@ -37,25 +39,27 @@ std::unique_ptr<MultigridLevel> after(const MultigridLevel &fine) {
   return thin[0] || thin[1] || thin[2] ? fine.joined(thin) : std::move(next);
 }
 
+// Whether two levels have the same cells, on different ranks.
 bool same_cells(const MultigridLevel &level, const MultigridLevel &next) {
   return level.box().domain_cells() == next.box().domain_cells();
 }
 
+// Restricts the residual after one relaxation from zero; `sum` is scratch.
 template <int Dim>
 EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, ConstView r, int n, const RowPart &part,
                                    View out, double *sum) {
   const auto &[x, y, z] = fine.lines;
-  // One fine cell more than there are children: a last cell without a partner has the weight 0 for it.
+  // A last cell without a partner is processed with a further fine cell of weight 0.
   const int begin = x.first, end = x.first + x.stride * n + (x.weight[2].back() > 0);
   for_rows_in_blocks(part, [&](int j, int k) EULASTIC_BODY {
     const int fine_j = y.first + y.stride * j, fine_k = z.first + z.stride * k;
     const int last = x.weight[1].back() > 0 || x.stride == 1 ? end : end - 1;
-    if (Dim == 3)  // the next plane
+    if (Dim == 3)  // prefetch the next plane
       for (int c = 0; c < z.stride; ++c)
         for (int b = 0; b < y.stride; ++b) prefetch(r.row(fine_j + b, fine_k + 1 + z.stride + c), end);
     for (int i = begin; i < end; ++i) sum[i] = 0;
     for (int c = 0; c < 3; ++c)
-      for (int b = 0; b < 3; b += 2) {  // the first two rows of children together, then a third
+      for (int b = 0; b < 3; b += 2) {  // the first two rows of children together, then the third one
         const Segment row{begin, last, fine_j + b, fine_k + c};
         const double plane = z.weight[c][k], weight[2] = {plane * y.weight[b][j], b == 0 ? plane * y.weight[1][j] : 0};
         if (!(weight[0] > 0)) continue;
@@ -85,18 +89,18 @@ EULASTIC_CLONES void restrict_3d(const MultigridLevel &f, double a, ConstView r,
   restrict_rows<3>(f, a, r, n, part, out, sum);
 }
 
-// Stages of smoothing that share a pass; the first of a level interpolates. Stage s reads fields[s % 2] and writes the
-// other one.
+// Smoothing stages that share a pass over memory. Stage s reads fields[s % 2] and writes the other field. The first
+// stage of a level interpolates.
 struct Pass {
   const Sides *sides;
   const MultigridLevel *fine;
-  const MultigridLevel *coarse;  // null: all of them relax
+  const MultigridLevel *coarse;  // level to interpolate from; null: all stages relax
   const double *factor;          // of every stage
   ConstView rhs;
   View fields[2];
   int depth;
-  int open_end;                          // of x: where the ghosts behind a high open side begin; -1: none
-  const Multigrid::RowsDone *rows_done;  // the stage after them
+  int open_end;                          // first ghost in x behind a high open boundary; -1: none
+  const Multigrid::RowsDone *rows_done;  // called as a further stage
 };
 
 // out = factor r + interpolated e; e has `coarse_cells` owned cells in x.
@@ -137,8 +141,9 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, co
                     out);
       else
         kernels::relax<Dim>(row, q, pass.rhs, pass.fine->coefficients(row.j, row.k), pass.factor[s], out);
-      pass.sides->wrap(out.row(row.j, row.k));                                     // long before it is read
-      if (s == 0 && pass.open_end >= 0) out.row(row.j, row.k)[pass.open_end] = 0;  // pairs may reach beyond the side
+      pass.sides->wrap(out.row(row.j, row.k));  // long before it is read
+      if (s == 0 && pass.open_end >= 0)
+        out.row(row.j, row.k)[pass.open_end] = 0;  // pairs may reach behind the boundary
     }
   });
 }
@@ -152,7 +157,7 @@ EULASTIC_CLONES void stages_3d(const Pass &pass, const StagePass &order, const S
 
 }  // namespace
 
-// By cells: the finest level may also be one on other ranks.
+// The number of cells decides, since the finest level may appear a second time on other ranks.
 const Multigrid::Relaxations &Multigrid::relaxations(const MultigridLevel &level) const {
   return level.box().domain_cells() == levels_[0]->box().domain_cells() ? on_finest : on_coarse;
 }
@@ -160,13 +165,13 @@ const Multigrid::Relaxations &Multigrid::relaxations(const MultigridLevel &level
 std::vector<Multigrid::Level> Multigrid::plan(const Domain &domain) {
   std::vector<Level> levels;
   levels.push_back(finest(domain));
-  while (!levels.back()->single_cell()) levels.push_back(after(*levels.back()));
+  while (!levels.back()->single_cell()) levels.push_back(next_level(*levels.back()));
   return levels;
 }
 
 std::string Multigrid::shares(const Domain &domain) {
   const std::vector<Level> levels = plan(domain);
-  double joined = 0, gathered = 0;  // cells of the largest levels that are
+  double joined = 0, gathered = 0;  // cells of the largest level on fewer ranks, and of the one on every rank
   for (std::size_t l = 1; l < levels.size(); ++l) {
     if (!same_cells(*levels[l - 1], *levels[l])) continue;
     double &cells = levels[l]->partition().ranks() == 1 ? gathered : joined;
@@ -192,7 +197,7 @@ PetscErrorCode Multigrid::create(const Domain &domain) {
       flops_ +=
           owned * ((relaxations(fine).after.size() + 1) * (kernels::line_laplacian_flops_per_direction * dim + 3) + 6);
     }
-    // Of coarse levels messages cost more than cells that are computed again.
+    // On coarse levels messages cost more than redundant computation.
     const int least = l > 0 && fine.partition().ranks() > 1 ? 2 : 1;
     if (dim == 3)
       fine.depth =
@@ -218,15 +223,15 @@ PetscErrorCode Multigrid::apply(const Field &rhs, Field &solution, Field &scratc
   PetscFunctionReturn(0);
 }
 
-// Ghosts of the right-hand side that restriction and smoothing read.
+// Ghost layers of the right-hand side that restriction and smoothing read.
 int Multigrid::halo_of(const MultigridLevel &level) { return std::max(halo, level.depth - 1); }
 
-// Leaves the ghosts of the solution to the caller.
+// Applies the V-cycle from level l on. Does not update the ghosts of the solution.
 PetscErrorCode Multigrid::cycle(std::size_t l, const Field &rhs, Field &solution, Field &scratch,
                                 const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   MultigridLevel &level = *levels_[l];
-  if (level.single_cell()) {  // without an open side defined up to a constant: 0
+  if (level.single_cell()) {  // 0 without an open boundary, because the solution is defined up to a constant
     if (level.has_cells() && level.box().any_open()) solution[0](0, 0, 0) = level.step() * rhs[0](0, 0, 0);
     PetscFunctionReturn(0);
   }
@@ -244,7 +249,7 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const Field &rhs, Field &solution
   PetscFunctionReturn(0);
 }
 
-// solution = the coarse one, interpolated, + one relaxation of `rhs`; then it is relaxed.
+// Sets solution = interpolated coarse solution + one relaxation of `rhs`, and smooths it.
 PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, const Field &rhs, Field &solution,
                                  Field &scratch, const RowsDone &rows_done) {
   PetscFunctionBeginUser;
@@ -254,7 +259,7 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
   for (const double after : relax.after) factors.push_back(after * fine.step());
   const int stages = static_cast<int>(factors.size());
   for (int done = 0, depth; done < stages; done += depth) {
-    const int passes = (stages - done + fine.depth - 1) / fine.depth;  // that are left, of equal depth
+    const int passes = (stages - done + fine.depth - 1) / fine.depth;  // remaining passes, of about equal depth
     depth = (stages - done + passes - 1) / passes;
     if (done == 0)
       PetscCall(coarse.exchange().update_ghosts(coarse.solution, 1 + depth / 2));
@@ -280,6 +285,7 @@ PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, c
   PetscFunctionReturn(0);
 }
 
+// Sets coarse.rhs to the restricted residual after one relaxation from zero.
 void Multigrid::restrict_residual(const MultigridLevel &fine, const Field &rhs, MultigridLevel &coarse) {
   if (!coarse.has_cells()) return;
   const double factor = relaxations(fine).before * fine.step();

@@ -1,11 +1,11 @@
-// A multigrid V-cycle for the Poisson equation with zero normal derivative on closed sides and 0 on open ones, where
-// the ghosts of all fields are 0, the value on the side itself: a fixed linear operator, without global sums, the same
-// bits on any number of ranks. Cf. Trottenberg, Oosterlee, Schuller, Multigrid, 2001.
+// A multigrid V-cycle for the Poisson equation with zero normal derivative on closed boundaries and value 0 on open
+// ones, whose ghosts hold this value, 0. It is a fixed linear operator without global sums, with the same bits on any
+// number of ranks. Cf. Trottenberg, Oosterlee, Schuller, Multigrid, 2001.
 //
-// One relaxation before the coarse grid (never stored: it is folded into the restriction), a few after it with the
-// steps of a Chebyshev polynomial; restriction by volume, linear interpolation; directions of unequal spacing are
-// halved one after the other. Levels with too few cells for each rank are joined on fewer ranks, small ones gathered
-// and continued by every rank for itself, down to one cell.
+// One relaxation comes before the coarse grid (never stored, but folded into the restriction), several after it, with
+// the steps of a Chebyshev polynomial. Restriction is by volume, interpolation linear. Directions of unequal spacing
+// are halved one after the other. Levels with too few cells per rank are moved to fewer ranks, small ones are gathered,
+// and every rank continues redundantly down to one cell.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -20,24 +20,27 @@ class Multigrid {
 public:
   static constexpr int halo = 2;  ///< ghost layers of the right-hand side that a cycle reads
 
+  /// Arguments of apply()'s callback.
   using RowsDone = std::function<void(ConstView, int, int, int, int)>;
 
-  /// Builds all levels, collectively; keeps no reference to `grid`.
+  /// Builds all levels; keeps no reference to `domain`. Collective.
   PetscErrorCode create(const Domain &domain);
-  /// solution = V rhs, about the q with lap q = rhs. `rhs`: `halo` ghost layers valid. `solution`: one ghost layer
-  /// valid on return; `scratch` is lost. All on the grid. Ghosts behind closed sides are neither used (but must be
-  /// finite) nor set; behind open sides they must be 0, of all three, as many as are exchanged, and stay so.
-  /// In 3-D, where x wraps around, rows_done(solution, thread, j_begin, j_end, k), if given, is called for rows as soon
-  /// as all owned ones around them have their last values, but for those at the ends of y and z.
+  /// Computes solution = V rhs, an approximation of the q with lap q = rhs, on the finest grid. `rhs` needs `halo`
+  /// valid ghost layers; `solution` has one on return; `scratch` is overwritten. Ghosts behind closed boundaries are
+  /// neither used (but must be finite) nor set; behind open boundaries they must be 0 in all three fields, in all
+  /// layers that are exchanged, and stay 0. In 3-D, if x wraps around, rows_done(solution, thread, j_begin, j_end, k),
+  /// if given, is called for rows once all owned rows around them have their final values, except for those at the ends
+  /// of y and z.
   PetscErrorCode apply(const Field &rhs, Field &solution, Field &scratch, const RowsDone &rows_done = {});
   /// Floating-point operations of one cycle on this rank.
   double flops() const { return flops_; }
   std::size_t bytes() const;
-  /// The levels of a grid, the finest first, without fields: each has half the cells of the one before it or, while
-  /// these are too few for a rank, the same cells on fewer ranks, in the end all of them on every rank. `grid` may be
+  /// The levels of a grid, finest first, without fields. Each level has half the cells of the one before; or the same
+  /// cells on fewer ranks, if half would be too few for a rank; or the same cells on every rank. `domain` may be
   /// Domain::planned.
   static std::vector<std::unique_ptr<MultigridLevel>> plan(const Domain &domain);
-  /// How the levels of plan() are shared, for people: how many there are, and the cells from which on ranks are joined.
+  /// A text on how the levels of plan() are distributed: their number, and the sizes from which they are on fewer
+  /// ranks.
   static std::string shares(const Domain &domain);
   struct Relaxations;
 

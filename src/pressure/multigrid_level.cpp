@@ -6,12 +6,13 @@
 namespace eulastic {
 namespace {
 
-// A last cell stays between half and twice as wide as the others, and the next number of cells is even if it can be.
-// Beside an open side it is never narrow: its coupling to the side would be too stiff for the steps of relaxation.
+// Half the number of cells. The last cell stays between half and twice as wide as the others, and the number is even if
+// possible. Beside an open boundary the last cell is never narrow: its coupling to the boundary would be too stiff for
+// the relaxation steps.
 int halved(int cells, bool last_is_narrow, bool open_high) {
-  const int more = (cells + 1) / 2;
-  if (cells % 2 == 0 || cells == 1) return more;
-  return more % 2 == 0 && !last_is_narrow && !open_high ? more : cells / 2;
+  const int rounded_up = (cells + 1) / 2;
+  if (cells % 2 == 0 || cells == 1) return rounded_up;
+  return rounded_up % 2 == 0 && !last_is_narrow && !open_high ? rounded_up : cells / 2;
 }
 
 int parent_of(int cell, int stride, int coarse_cells) { return std::min(cell / stride, coarse_cells - 1); }
@@ -52,7 +53,7 @@ MultigridLevel::MultigridLevel(const Partition &partition, const Widths &widths,
       const bool low_wall = box().boundary(d) == Boundary::wall && g == 0;
       const bool high_wall = box().boundary(d) == Boundary::wall && g == cells - 1;
       const auto coupling = [&](bool side, bool open, int other) {
-        if (side && open) return 2 / (h * h * w[g] * w[g]);  // to the 0 on it
+        if (side && open) return 2 / (h * h * w[g] * w[g]);  // to the value 0 on the boundary
         return cells == 1 || side ? 0 : 2 / (h * h * w[g] * (w[g] + w[other]));
       };
       low_[d].push_back(coupling(low_wall, box().is_open(d, false), below));
@@ -67,7 +68,8 @@ MultigridLevel::MultigridLevel(const Partition &partition, const Widths &widths,
 }
 
 std::unique_ptr<MultigridLevel> MultigridLevel::coarser() const {
-  // Beyond this ratio of spacings the stiffer direction goes first: relaxation smooths little along the other.
+  // Beyond this ratio of spacings the stiffer direction is halved first, because relaxation hardly smooths along the
+  // other.
   constexpr double about_equal = 1.25;
   Int3 cells = box().domain_cells();
   Widths widths;
@@ -122,27 +124,27 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
       const bool exists = child < fine_cells && parent_of(child, line.stride, coarse_cells) == g;
       line.weight[m].push_back(exists ? fine_width[child] / coarse_width[g] : 0);
     }
-  // Which way the neighbour lies, and its share, for a fine cell of global index g within the box.
+  // Direction of the neighbour (-1, 0, 1) and its share for a fine cell of global index g in the domain.
   const auto neighbour = [&](int g, double *share) {
     const int parent = parent_of(g, line.stride, coarse_cells);
     const double distance = fine_centre[g] - coarse_centre[parent];
-    const int way = distance > 0 ? 1 : distance < 0 ? -1 : 0, other = parent + way;
+    const int step = distance > 0 ? 1 : distance < 0 ? -1 : 0, other = parent + step;
     *share = 0;
-    if (way != 0 && wall && (other < 0 || other >= coarse_cells)) {
+    if (step != 0 && wall && (other < 0 || other >= coarse_cells)) {
       if (!box().is_open(d, other >= coarse_cells)) return 0;
       *share = 2 * std::abs(distance) / coarse_width[parent];
-      return way;
+      return step;
     }
-    if (way == 0 || coarse_cells == 1) return 0;
+    if (step == 0 || coarse_cells == 1) return 0;
     *share = 2 * std::abs(distance) / (coarse_width[parent] + coarse_width[(other + coarse_cells) % coarse_cells]);
-    return way;
+    return step;
   };
   for (int i = -reach; i < box().cells()[d] + reach; ++i) {
     const int g = image(fine_begin + i, fine_cells), turns = (fine_begin + i - g) / fine_cells;
     double share;
-    const int way = neighbour(g, &share);
+    const int step = neighbour(g, &share);
     line.parent.push_back(parent_of(g, line.stride, coarse_cells) + turns * coarse_cells - coarse_begin);
-    line.neighbour.push_back(line.parent[i] + way);
+    line.neighbour.push_back(line.parent[i] + step);
     line.share.push_back(share);
   }
   for (int I = -1; I <= coarse_owned; ++I) {

@@ -1,5 +1,5 @@
-// One level of the V-cycle: cells that are equal but for the last one of a direction (wider or narrower where the
-// number of cells was odd), their Laplacian as couplings along lines, and the lines of the transfer to the next level.
+// One level of the V-cycle: its cells, which are equal except for the last one of a direction (wider or narrower if the
+// number of cells was odd), their Laplacian as couplings along lines, and the transfer to the next level.
 #pragma once
 
 #include "kernels/poisson.hpp"
@@ -8,7 +8,7 @@
 
 namespace eulastic {
 
-/// One value per cell of a direction and of `layers` around them: local indices from -layers on.
+/// One value per cell of a direction and of `layers` cells around them; local indices from -layers on.
 template <class T>
 class LineOf {
 public:
@@ -22,15 +22,15 @@ private:
   std::vector<T> values_;
 };
 
-/// Between the cells of two levels along one direction, local indices. The children of coarse cell I begin at
-/// first + stride I; there are two of them, or one (stride 1, or a last cell that stays alone), or three.
+/// Transfer between two levels along one direction, in local indices. The children of coarse cell I begin at first +
+/// stride I. There are two of them, or one (stride 1, or a last cell without a partner), or three.
 struct LineTransfer {
   int first = 0, stride = 1;
-  /// [child][I]: its share of the volume of I, 0 where there is no such child
+  /// [child][I]: share of the volume of I, 0 if there is no such child.
   std::array<std::vector<double>, 3> weight;
-  LineOf<int> parent, neighbour;  ///< of fine cell i: its coarse cell and the one on its own side of the centre
-  LineOf<double> share;           ///< of the neighbour, in linear interpolation; 0 at walls
-  std::vector<double> share_low, share_high;  ///< [I + 1]: the same for the two halves of I, -1 <= I <= cells
+  LineOf<int> parent, neighbour;  ///< of fine cell i: its coarse cell, and the next one on the same side of the centre
+  LineOf<double> share;           ///< weight of the neighbour in linear interpolation, 0 at walls
+  std::vector<double> share_low, share_high;  ///< [I + 1]: the same for both halves of I, -1 <= I <= cells
 
   double *low() { return share_low.data() + 1; }
   const double *low() const { return share_low.data() + 1; }
@@ -49,29 +49,29 @@ public:
   const Box &box() const { return partition_.box(); }
   GhostExchange &exchange() { return exchange_; }
   bool single_cell() const { return box().domain_cell_count() == 1; }
-  /// Whether this rank holds cells.
+  /// Whether this rank has cells.
   bool has_cells() const { return box().cell_count() > 0; }
-  /// 1 / (sum over directions of -2/h^2): the step of an undamped relaxation.
+  /// The step of an undamped relaxation, 1 / (sum over directions of -2/h^2).
   double step() const { return step_; }
   kernels::LineCoefficients coefficients(int j, int k) const {
     return {low_[0].data(), high_[0].data(), low_[1][j], high_[1][j], low_[2][k], high_[2][k]};
   }
 
-  /// The next coarser level: halved in the directions whose spacing is about the smallest one.
+  /// The next coarser level: halved in the directions whose spacing is about the smallest.
   std::unique_ptr<MultigridLevel> coarser() const;
   /// The same cells, all of them on every rank.
   std::unique_ptr<MultigridLevel> everywhere() const;
-  /// The same cells on fewer ranks: Partition::joined.
+  /// The same cells on fewer ranks: Partition::joined().
   std::unique_ptr<MultigridLevel> joined(const std::array<bool, 3> &along) const;
-  /// In which directions, of those that several ranks share, one of them would have fewer than two cells of `coarse`.
+  /// Directions shared by several ranks in which one of them would have fewer than two cells of `coarse`.
   std::array<bool, 3> thin(const MultigridLevel &coarse) const;
   /// The transfer to `coarse` along direction d.
   LineTransfer transfer(const MultigridLevel &coarse, int d) const;
 
-  Field rhs, solution, scratch;                  ///< empty until allocated: the finest level works on its caller's
-  int depth = 1;                                 ///< stages of a pass of smoothing
-  std::array<LineTransfer, 3> lines;             ///< to the next level, if that has fewer cells
-  std::unique_ptr<Agglomeration> agglomeration;  ///< to the next level, if that has the same cells on other ranks
+  Field rhs, solution, scratch;                  ///< empty until allocated; the finest level uses its caller's fields
+  int depth = 1;                                 ///< smoothing stages of a pass
+  std::array<LineTransfer, 3> lines;             ///< to the next level, if it has fewer cells
+  std::unique_ptr<Agglomeration> agglomeration;  ///< to the next level, if it has the same cells on other ranks
 
 private:
   Partition partition_;

@@ -14,8 +14,8 @@
 namespace eulastic {
 namespace {
 
-constexpr double round_off = 1e-12;  // of the first residual: further on directions are noise
-constexpr int patience = 12;         // iterations without progress: round-off
+constexpr double round_off = 1e-12;   // of the first residual; below it directions are noise
+constexpr int stagnation_limit = 12;  // iterations without progress after which only round-off is left
 
 template <int Dim>
 EULASTIC_INLINE void laplacian_rows(const Box &box, const RowPart &part, double dt, const Field &q, Field &out) {
@@ -56,7 +56,7 @@ void add_values(const Box &box, const RowPart &part, ConstView a, ExactSums &sum
   }
 }
 
-// to = scale to + factor from, with a layer of ghosts.
+// to = scale to + factor from, including one ghost layer.
 EULASTIC_CLONES void combine(const Box &box, const RowPart &owned, double scale, double factor, const Field &from,
                              Field &to) {
   const RowPart part = owned.with_ghosts(box);
@@ -78,33 +78,33 @@ void combine_all(const Box &box, double scale, double factor, const Field &from,
 }  // namespace
 
 ObstacleSolver::ObstacleSolver(const Domain &domain, GhostExchange &exchange, WorkSpace &work, const RigidFaces &faces,
-                               double accuracy, int memory, std::unique_ptr<PressureSolver> other)
+                               double accuracy, int memory, std::unique_ptr<PressureSolver> preconditioner)
     : domain_(&domain),
       exchange_(&exchange),
       work_(&work),
-      other_(std::move(other)),
+      preconditioner_(std::move(preconditioner)),
       memory_(domain, memory),
       accuracy_(accuracy) {
-  follow(faces);
+  update_faces(faces);
 }
 
 std::size_t ObstacleSolver::bytes() const {
-  return other_->bytes() + memory_.bytes() + cells_.capacity() * sizeof(Beside) +
+  return preconditioner_->bytes() + memory_.bytes() + cells_.capacity() * sizeof(CellAtBody) +
          first_.capacity() * sizeof(std::size_t);
 }
 
-bool ObstacleSolver::Beside::closed() const {
+bool ObstacleSolver::CellAtBody::closed() const {
   return std::all_of(open, open + 6, [](double part) { return part == 0; });
 }
 
-void ObstacleSolver::follow(const RigidFaces &faces) {
+void ObstacleSolver::update_faces(const RigidFaces &faces) {
   closed_count_ = -1;
   cells_.clear();
   first_.clear();
   travels_ = faces.travels;
   const Int3 &n = domain_->cells();
   const Real3 &h = domain_->spacing();
-  // How far faces are open, and how far it is from them to the surface through the cell, in parts of the spacing.
+  // Openness of faces, and distance from a face to the surface through the cell, in parts of the spacing.
   std::vector<std::array<double, 6>> open(n[0]), depth(n[0]);
   std::vector<int> body(n[0]);
   for (const Segment &row : domain_->rows()) {
@@ -126,7 +126,7 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
       }
     for (int i = 0; i < n[0]; ++i) {
       if (std::all_of(open[i].begin(), open[i].end(), [](double part) { return part == 1; })) continue;
-      Beside cell{i, {}};
+      CellAtBody cell{i, {}};
       std::copy_n(open[i].begin(), 2 * domain_->dimension(), cell.open);  // 2-D has no faces along z
       for (int d = 0; d < domain_->dimension(); ++d) {
         const double *at = &open[i][2 * d], *to = &depth[i][2 * d];
@@ -138,7 +138,7 @@ void ObstacleSolver::follow(const RigidFaces &faces) {
   first_.push_back(cells_.size());
 }
 
-// dt div(open grad q); q has a layer of ghosts.
+// Computes dt div(open grad q); q needs one valid ghost layer.
 void ObstacleSolver::apply(double dt, const Field &q, Field &out) const {
   in_row_parts(*domain_, [&](const RowPart &part) {
     (domain_->dimension() == 2 ? laplacian_2d : laplacian_3d)(*domain_, part, dt, q, out);
@@ -159,9 +159,9 @@ void ObstacleSolver::apply(double dt, const Field &q, Field &out) const {
   });
 }
 
-// What the other solver, to which all faces are open, lacks in cells that are nearly closed. Where bodies rest they are
-// served by what earlier increments were.
-PetscErrorCode ObstacleSolver::add_local(double dt, const Field &residual, Field &correction) const {
+// Adds a diagonal correction in nearly closed cells, whose faces the preconditioner regards as open. If bodies are at
+// rest, earlier increments serve this purpose.
+PetscErrorCode ObstacleSolver::add_diagonal_correction(double dt, const Field &residual, Field &correction) const {
   PetscFunctionBeginUser;
   const Real3 &h = domain_->spacing();
   for_beside([&](const Beside &cell, const Segment &row) {
@@ -177,9 +177,9 @@ PetscErrorCode ObstacleSolver::add_local(double dt, const Field &residual, Field
   PetscFunctionReturn(0);
 }
 
-// The equation says nothing of cells whose faces are all closed, where what the other solver leaves would add up over
-// the steps: they get 0. Where no side is open, the mean of the increment over the other cells becomes 0; where bodies
-// travel, which cells these are changes with the steps, and the mean of the pressure over them becomes 0.
+// Cells whose faces are all closed get 0, because they are not part of the equation, and values left there by the
+// preconditioner would add up over the steps. If no boundary is open, the mean of the increment over the other cells
+// becomes 0; if bodies travel, so that these cells change, the mean of the pressure over them becomes 0.
 PetscErrorCode ObstacleSolver::normalise(const Field &pressure, Field &increment) {
   PetscFunctionBeginUser;
   const View q = increment[0];
@@ -237,21 +237,21 @@ PetscErrorCode ObstacleSolver::solve(double dt, const Field &divergence, Field &
   const int remembered = memory_ ? memory_.count() : 0;
   if (memory_) PetscCall(memory_.update_ghosts(*domain_, *exchange_));
   double best = square;
-  for (int n = 0, since = 0; n < most_iterations && since < patience; ++n, ++since) {
+  for (int n = 0, since = 0; n < most_iterations && since < stagnation_limit; ++n, ++since) {
     const double rms = std::sqrt(square / cells);
     if (!(rms > target)) break;
     if (n < remembered) {
       correction.copy_from(memory_.increment(n));
     } else {
-      constexpr double inner = 0.1;  // of the residual, in a direction
-      other_->set_target(inner * rms);
-      PetscCall(other_->solve(dt, residual, pressure, correction));
-      if (travels_) PetscCall(add_local(dt, residual, correction));
+      constexpr double inner = 0.1;  // relative residual for the preconditioner
+      preconditioner_->set_target(inner * rms);
+      PetscCall(preconditioner_->solve(dt, residual, pressure, correction));
+      if (travels_) PetscCall(add_diagonal_correction(dt, residual, correction));
       ++iterations_;
     }
     if (n == 0 || last == 0) {
       direction.copy_from(correction);
-    } else {  // `image` still is A p of the direction before
+    } else {  // `image` still is A p of the previous direction
       double coupling;
       PetscCall(products(correction, image, residual, residual, &coupling, &ignored));
       combine_all(*domain_, -coupling / last, 1, correction, direction);
@@ -260,7 +260,7 @@ PetscErrorCode ObstacleSolver::solve(double dt, const Field &divergence, Field &
     double curvature, projection;
     PetscCall(products(direction, image, direction, residual, &curvature, &projection));
     last = curvature;
-    if (curvature == 0 && n < remembered) continue;  // nothing is remembered yet
+    if (curvature == 0 && n < remembered) continue;  // the memory is still empty
     if (curvature == 0) break;
     const double step = projection / curvature;
     combine_all(*domain_, 1, step, direction, increment);
@@ -275,28 +275,28 @@ PetscErrorCode ObstacleSolver::solve(double dt, const Field &divergence, Field &
   }
   PetscCall(normalise(pressure, increment));
   if (memory_) {
-    memory_.turn();
+    memory_.advance();
     memory_.increment(0).copy_from(increment);
   }
   PetscFunctionReturn(0);
 }
 
-// What the pressure and its update are in cells beside bodies, or within them.
+// Pressure and its rotational update in cells beside or inside bodies.
 
 namespace {
 
-constexpr double least_open = 0.03;  // that D* is divided by
+constexpr double least_open = 0.03;  // least factor by which D* is divided
 
 }  // namespace
 
-PetscErrorCode ObstacleSolver::extend(Field &pressure) const {
+PetscErrorCode ObstacleSolver::extrapolate_into_closed(Field &pressure) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);
   const Layout &layout = domain_->layout();
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
   WorkSpace::Lease lease;
   PetscCall(work_->take("known pressure", 1, &lease));
-  Field known = lease.part(0, 1);  // 1, else 0: behind sides of the box too
+  Field known = lease.part(0, 1);  // 1 in cells with a known pressure; else 0, also behind boundaries
   known.clear();
   for (const Segment &row : domain_->rows()) std::fill_n(known[0].row(row.j, row.k), row.size(), 1.0);
   for_closed_cells([&](const Int3 &cell) { known[0](cell[0], cell[1], cell[2]) = 0; });
@@ -322,7 +322,7 @@ void ObstacleSolver::copy_closed(const Field &from, Field *to) const {
   for_closed_cells([&](const Int3 &cell) { (*to)[0](cell[0], cell[1], cell[2]) = from[0](cell[0], cell[1], cell[2]); });
 }
 
-PetscErrorCode ObstacleSolver::spread(double part, Field &divergence) const {
+PetscErrorCode ObstacleSolver::scale_divergence(double part, Field &divergence) const {
   PetscFunctionBeginUser;
   const int faces = 2 * domain_->dimension();
   for_beside([&](const Beside &cell, const Segment &row) {

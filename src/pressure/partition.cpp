@@ -7,10 +7,10 @@ namespace {
 
 // A point along one direction: its local index, the position of its owner among the ranks, and its local index there.
 struct Point {
-  int here, position, there;
+  int local, position, owner_local;
 };
 
-// The points of a box along d with all its ghosts, but without those behind sides of the domain.
+// The points of a box along d with all ghosts, except for those behind boundaries of the domain.
 std::vector<Point> points_along(const Box &box, const Split &split, int d) {
   const int N = box.domain_cells()[d], begin = box.layout().begin[d], ghosts = box.layout().ghosts[d];
   std::vector<Point> points;
@@ -80,13 +80,14 @@ std::vector<Ghost> Partition::ghosts() const {
   for (const Point &k : z)
     for (const Point &j : y)
       for (const Point &i : x) {
-        const Int3 at{i.here, j.here, k.here};
+        const Int3 at{i.local, j.local, k.local};
         if (at[0] >= 0 && at[0] < n[0] && at[1] >= 0 && at[1] < n[1] && at[2] >= 0 && at[2] < n[2]) continue;
         const int owner = split_.rank_at({i.position, j.position, k.position});
         const Box box = split_.box_of(owner, box_.domain_shape(), box_.layout().ghosts[0]);
-        if (owner == rank_ && at == Int3{i.there, j.there, k.there}) continue;  // N of a direction with sides
+        // The point N of a direction with boundaries is its own owner's.
+        if (owner == rank_ && at == Int3{i.owner_local, j.owner_local, k.owner_local}) continue;
         const Layout &theirs = box.layout();
-        ghosts.push_back({at, owner, static_cast<PetscInt>(theirs.offset(i.there, j.there, k.there)),
+        ghosts.push_back({at, owner, static_cast<PetscInt>(theirs.offset(i.owner_local, j.owner_local, k.owner_local)),
                           static_cast<PetscInt>(theirs.size)});
       }
   return ghosts;

@@ -1,4 +1,4 @@
-// Which cells each rank has of a level of the V-cycle. Ranks may have none, as a DMDA does not allow.
+// Distribution of the cells of a multigrid level over the ranks. Unlike with a DMDA, ranks may have no cells.
 #pragma once
 
 #include "field/ghost_exchange.hpp"
@@ -8,12 +8,13 @@ namespace eulastic {
 
 class Partition {
 public:
-  /// That of the domain's DMDA.
+  /// The distribution of the domain's DMDA.
   explicit Partition(const Domain &domain);
-  /// The domain in fewer cells. In a direction with fewer cells each rank begins at half of its first cell, rounded up.
+  /// The domain with fewer cells. In a direction with fewer cells the first cell of each rank is half of the former
+  /// one, rounded up.
   Partition coarse(const Int3 &cells) const;
-  /// The same cells on fewer ranks: in each named direction every second rank that has cells takes those of the next
-  /// one as well.
+  /// The same cells on fewer ranks: in the given directions every second rank with cells also takes those of the next
+  /// one.
   Partition joined(const std::array<bool, 3> &along) const;
   /// The same cells, all of them on every rank.
   Partition everywhere() const;
@@ -24,11 +25,11 @@ public:
   const Split &split() const { return split_; }
   /// The cells of this rank.
   const Box &box() const { return box_; }
-  /// The ghosts of this rank.
+  /// The ghosts of this rank and their owners.
   std::vector<Ghost> ghosts() const;
 
 private:
-  /// `cells` of the domain, divided by split_.
+  /// Sets box_ for a domain of `cells`, divided by split_.
   void set_box(const Int3 &cells);
 
   MPI_Comm comm_;

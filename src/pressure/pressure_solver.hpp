@@ -1,4 +1,4 @@
-// One interface for all ways to make the velocity solenoidal: (10) exactly, or (11) by artificial compressibility.
+// Interface of the solvers that make the velocity solenoidal: by (10) to a tolerance, or by one step of (11).
 #pragma once
 
 #include "base/petsc.hpp"
@@ -14,23 +14,23 @@ class PressureSolver {
 public:
   virtual ~PressureSolver() = default;
 
-  /// Finds the pressure increment for lap(increment) = divergence / dt with zero normal derivative on closed sides and
-  /// 0 on open ones. `divergence`: D* = rho div v* at centres, one ghost layer valid. `pressure`: p^N, one ghost layer
-  /// valid; a solver may remove its mean where no side is open. `increment`: out, one ghost layer valid; unused where
-  /// formula() is not null.
+  /// Computes the pressure increment from lap(increment) = divergence / dt with zero normal derivative on closed
+  /// boundaries and 0 on open ones. `divergence`: D* = rho div v* at centres, one valid ghost layer. `pressure`: p^N,
+  /// one valid ghost layer; a solver may remove its mean if no boundary is open. `increment`: result, one valid ghost
+  /// layer; unused if formula() is not null. Collective.
   virtual PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) = 0;
 
-  /// The last increment as a function of D* and p^N, which is stored nowhere, or null.
+  /// The last increment as a function of D* and p^N if it is not stored in a field, else null.
   virtual const kernels::AcmIncrement *formula() const { return nullptr; }
-  /// rms of D that is good enough; exact solvers and the paper's single step take no notice.
+  /// Sets the rms of D that suffices. Exact solvers and the single step of the paper ignore it.
   virtual void set_target(double) {}
-  /// Sweeps or iterations since the start; 0 for exact solvers.
+  /// Number of iterations since the start; 0 for exact solvers.
   virtual long sweeps() const { return 0; }
-  /// beta of the last solve() by artificial compressibility; 0 where there is no such speed.
+  /// Sound speed beta of the last solve() by artificial compressibility; else 0.
   virtual double sound_speed() const { return 0; }
-  /// Fields that must survive a restart for the same bits, or null.
+  /// Fields that must be in a checkpoint for the same bits after a restart, or null.
   virtual Field *memory() { return nullptr; }
-  /// These become 0; until the next solve() owned cells may be written then.
+  /// Sets these fields to 0; until the next solve() their owned cells may be written.
   virtual void clear_memory() {}
   /// Bytes of the solver's own fields on this rank.
   virtual std::size_t bytes() const { return 0; }

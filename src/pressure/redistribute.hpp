@@ -1,4 +1,5 @@
-// Blocks of cells, one per rank, and the moves between two such distributions: to complete lines, or to fewer ranks.
+// Distributions of cells as one block per rank, and transfers between two of them: to complete lines, or to fewer
+// ranks.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -7,7 +8,7 @@
 namespace eulastic {
 
 struct CellBlock {
-  Int3 begin{}, cells{};  ///< global; stored x fastest, without ghosts
+  Int3 begin{}, cells{};  ///< global indices; values are stored with x fastest, without ghosts
   bool operator==(const CellBlock &other) const noexcept { return begin == other.begin && cells == other.cells; }
   std::ptrdiff_t size() const noexcept { return std::ptrdiff_t(cells[0]) * cells[1] * cells[2]; }
   std::ptrdiff_t offset(int i, int j, int k) const noexcept {
@@ -19,30 +20,31 @@ struct CellBlock {
 class CellBlocks {
 public:
   explicit CellBlocks(const Split &split);
-  /// Complete lines along `direction`: the ranks that shared one now split their cells along `other` instead. So a
-  /// move between the two stays among them.
+  /// The distribution with complete lines along `direction`: ranks that shared a line split their cells along `other`
+  /// instead, so that the transfer involves only these ranks.
   CellBlocks complete(int direction, int other) const;
   const CellBlock &of(int rank) const { return blocks_[rank]; }
   int ranks() const { return static_cast<int>(blocks_.size()); }
   bool operator==(const CellBlocks &other) const { return blocks_ == other.blocks_; }
 
 private:
-  Int3 cells_{}, parts_{};  ///< of the domain; ranks along each direction
+  Int3 cells_{}, parts_{};  ///< cells of the domain; ranks along each direction
   std::vector<Int3> positions_;
   std::vector<CellBlock> blocks_;
 };
 
-/// Moves values from one distribution to another and back, one PetscSF for both.
+/// Transfers values from one distribution to another and back by one PetscSF.
 class Redistribution {
 public:
-  /// Collective. Without effect, and free, when both are the same.
+  /// Prepares the transfer. If both distributions are equal, transfers do nothing. Collective.
   PetscErrorCode create(MPI_Comm comm, const CellBlocks &from, const CellBlocks &to);
-  /// `values` in `from` become `values` in `to`; `other` is scratch. Both must hold the larger of the two blocks.
+  /// Transfers `values` from `from` to `to`, or back. `other` is scratch; both vectors must hold the larger of the two
+  /// blocks. Collective.
   PetscErrorCode forward(std::vector<double> &values, std::vector<double> &other);
   PetscErrorCode backward(std::vector<double> &values, std::vector<double> &other);
 
 private:
-  SfHandle scatter_;  ///< roots in `from`, leaves in `to`; empty when nothing moves
+  SfHandle scatter_;  ///< roots in `from`, leaves in `to`; empty if both are equal
 };
 
 }  // namespace eulastic

@@ -6,8 +6,8 @@
 
 namespace eulastic {
 
-/// Adds N sums over a row of n cells, whose first has absolute x index `begin`, to `sums`; `product` as lane_sums() has
-/// it, with cells of this row.
+/// Adds N sums over a row of n cells, the first of which has the absolute x index `begin`, to `sums`. `product` is
+/// called as by lane_sums(), with the cells of this row.
 template <int N, class Product>
 EULASTIC_INLINE void add_row_sums(int n, std::int64_t begin, Product product, ExactSums &sums) {
   for (int from = 0; from < n;) {

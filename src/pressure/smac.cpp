@@ -23,7 +23,8 @@ PetscErrorCode SmacSolver::create(const Domain &domain, GhostExchange &exchange,
 PetscErrorCode SmacSolver::set_up() {
   PetscFunctionBeginUser;
   const bool flat = domain_->dimension() == 2;
-  // Every move hands the cut to a direction whose lines are done or still to come, so that slabs move only once.
+  // The directions are ordered such that each transfer splits a direction that is complete or still to come; slabs are
+  // transferred only once.
   const CellBlocks own(domain_->split()), x = own.complete(0, 1), z = x.complete(2, 0), y = z.complete(1, flat ? 0 : 2);
   PetscCall(to_x_.create(domain_->comm(), own, x));
   PetscCall(to_z_.create(domain_->comm(), x, z));

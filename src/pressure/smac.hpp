@@ -1,5 +1,5 @@
-// SMAC: the discrete Poisson equation (10) solved to round-off on any decomposition. Real transforms in x and z,
-// a (cyclic) tridiagonal system in y; the same bits on any number of ranks.
+// SMAC: solves the discrete Poisson equation (10) to round-off on any decomposition, by real transforms in x and z and
+// a (cyclic) tridiagonal system in y. The bits do not depend on the number of ranks.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -16,22 +16,22 @@ class SmacSolver final : public PressureSolver {
 public:
   /// Whether this build has FFTW.
   static bool available();
-  /// Collective on the grid's communicator; `grid` and `exchange` must outlive the solver. Fails without FFTW.
+  /// Creates the solver; `domain` and `exchange` must outlive it. Fails without FFTW. Collective.
   static PetscErrorCode create(const Domain &domain, GhostExchange &exchange, std::unique_ptr<PressureSolver> *solver);
 
-  /// The zero-mean increment with lap(increment) = (divergence - its mean) / dt. Leaves `pressure` alone.
+  /// Solves lap(increment) = (divergence - its mean) / dt for the increment with zero mean. Does not change `pressure`.
   PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
 
 private:
   SmacSolver(const Domain &domain, GhostExchange &exchange) : domain_(&domain), exchange_(&exchange) {}
   PetscErrorCode set_up();
-  /// All y lines of `values_`, times `factor`.
+  /// Solves all y lines of values_, multiplied by `factor`.
   void solve_y(double factor);
 
   const Domain *domain_;
   GhostExchange *exchange_;
   Redistribution to_x_, to_z_, to_y_;  ///< grid -> complete x -> complete z -> complete y lines
-  CellBlock box_x_, box_z_, box_y_;    ///< mine, with complete lines
+  CellBlock box_x_, box_z_, box_y_;    ///< blocks of this rank with complete lines
   LineTransform transform_x_, transform_z_;
   TridiagonalLines lines_y_;
   std::vector<double> stiffness_x_, stiffness_z_;  ///< (h_y / h)^2 times the eigenvalues in box_y_

@@ -1,4 +1,4 @@
-// What a pressure sweep does with rows: the sums that say how far to go, and the step.
+// Passes over rows of a pressure iteration: the sums that determine the coefficients, and the update of the fields.
 #pragma once
 
 #include "base/exact_sum.hpp"
@@ -10,47 +10,48 @@
 
 namespace eulastic {
 
-/// D and the directions that it is minimised over: q_f, whose Laplacians L_f are taken, and, if `recurs`, the step d
-/// before, of which L is the D before less D. One ghost layer of the q_f is read.
-struct SweepTask {
+/// D and the directions over which it is minimised: q_f, whose Laplacians L_f are computed, and, if `with_previous`,
+/// the previous step d, whose L is the previous D less D. Reads one ghost layer of the q_f.
+struct IterationTask {
   const Domain *domain;
   const ConstView *q;
-  int stencils;  ///< how many q_f: 1 to SweepSums::most, 1 if `recurs`
-  bool recurs;
+  int stencils;  ///< number of q_f: 1 to LeastSquaresSums::most, 1 if `with_previous`
+  bool with_previous;
   ConstView residual, before;
 
-  int directions() const { return stencils + recurs; }
+  int directions() const { return stencils + with_previous; }
 };
 
-/// Exact sums of a sweep, of rows in any order, as soon as somebody has them at hand.
-class RowSums {
+/// Exact sums of an iteration. Rows may be added in any order, as soon as they are available.
+class IterationSums {
 public:
   void start(const Domain &domain, int directions);
-  /// Adds rows j_begin <= j < j_end of plane k (3-D) but those at the ends of y and z, by this thread.
-  void add_inner(const SweepTask &task, int thread, int j_begin, int j_end, int k);
-  /// Adds all rows that are not yet in and finds the coefficients and the mean of q_0. Collective. What D before - D
-  /// has of rounding must not count: a step that moved D by less than a millionth gets the coefficient 0.
-  PetscErrorCode find_minimum(const SweepTask &task, SweepMinimum *minimum, double *mean);
+  /// Adds rows j_begin <= j < j_end of plane k (3-D), except for those at the ends of y and z, by this thread.
+  void add_inner(const IterationTask &task, int thread, int j_begin, int j_end, int k);
+  /// Adds all remaining rows and computes the coefficients and the mean of q_0. A previous step that changed D by less
+  /// than a millionth gets the coefficient 0, because its L is mainly round-off. Collective.
+  PetscErrorCode find_minimum(const IterationTask &task, LeastSquaresSolution *minimum, double *mean);
 
 private:
-  std::vector<ExactSums> sums_;  ///< by threads
-  std::vector<char> summed_;     ///< owned rows that are in them
+  std::vector<ExactSums> sums_;  ///< of each thread
+  std::vector<char> summed_;     ///< whether an owned row has been added
 };
 
-/// What a sweep does to the increment. Every second one leaves its d to the next, which still has it.
+/// How an iteration changes the increment. Every second iteration leaves its d to the next one, which still has it.
 enum class Increment { later, set, set_two, add, add_two };
 
-/// d = sum c_i q_i + c d - shift, in place, and increment += scale d, both in one ghost layer too; new D = D - sum c_i
-/// L_i, owned; for `after` wrapped around a periodic x by one. New D may be where `before` is.
-struct StepTask : SweepTask {
+/// Updates d = sum c_i q_i + c d - shift in place and increment += scale d, both including one ghost layer, and
+/// computes the new D = D - sum c_i L_i of owned cells, wrapped around a periodic x by one cell for `after`. The new D
+/// may be stored in `before`.
+struct UpdateTask : IterationTask {
   const double *coefficient;
   double shift, scale;
   Increment how;
-  bool last;  ///< leaves D and d alone
+  bool last;  ///< D and d are not updated
   View new_residual, direction, increment;
-  /// In 3-D: after(thread, j_begin, j_end, k) for rows around which all owned ones have been done. May be null.
+  /// In 3-D: called as after(thread, j_begin, j_end, k) for rows around which all owned rows are complete. May be null.
   std::function<void(int, int, int, int)> after;
 };
-void take_step(const StepTask &task);
+void update_fields(const UpdateTask &task);
 
 }  // namespace eulastic

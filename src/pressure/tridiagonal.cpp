@@ -8,9 +8,9 @@ void TridiagonalLines::remove_mean(int lane) {
   for (int j = 0; j < cells_; ++j) row(j)[lane] -= sum / cells_;
 }
 
-// The last unknown is kept aside: with T the matrix of the others and c its coupling to them, y = T^-1 g and
-// z = T^-1 c give q_j = y_j + z_j q_last, and the last equation gives q_last. That is Gaussian elimination of a
-// diagonally dominant symmetric matrix, hence backward stable, for walls and for the cyclic case alike; and the
+// The last unknown is eliminated separately. With T the matrix of the others and c its coupling to them, y = T^-1 g and
+// z = T^-1 c give q_j = y_j + z_j q_last, and the last equation yields q_last. This is Gaussian elimination of a
+// diagonally dominant symmetric matrix, hence backward stable, both between boundaries and in the cyclic case. The
 // singular lane differs only in q_last = 0.
 void TridiagonalLines::solve(const double *shift) {
   const int last = cells_ - 1;

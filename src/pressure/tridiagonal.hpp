@@ -1,5 +1,5 @@
-// Eight lines at a time of  (2 + shift) q_j - q_{j-1} - q_{j+1} = g_j,  periodic or between sides: closed (q_{-1} =
-// q_0) or open (q_{-1} = -q_0).
+// Solves eight lines at a time of  (2 + shift) q_j - q_{j-1} - q_{j+1} = g_j,  periodic or between boundaries: closed
+// (q_{-1} = q_0) or open (q_{-1} = -q_0).
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ public:
   /// `cells` >= 3 per line.
   TridiagonalLines(int cells, bool periodic, std::array<bool, 2> open = {})
       : cells_(cells), periodic_(periodic), open_(open), work_(3 * lanes * cells) {}
-  /// g on entry to `solve`, q on return: the eight values of one j.
+  /// The eight values of one j: g before solve(), q after it.
   double *row(int j) { return work_.data() + lanes * j; }
-  /// `shift` >= 0, one per lane. A lane with shift 0 and no open end is singular: its g loses its mean, and so does its
-  /// q.
+  /// Solves all lanes. `shift` >= 0, one per lane. A lane with shift 0 and no open boundary is singular: the means of
+  /// its g and q are removed.
   void solve(const double *shift);
 
 private:

@@ -12,12 +12,12 @@
 namespace eulastic {
 namespace {
 
-constexpr double inward = 1e-6;      // in cells
-constexpr double on_surface = 1e-9;  // likewise
-constexpr double shortest = 1e-3;    // of a link, in spacings
-constexpr double least_open = 0.03;  // part of the pressure increment that a cut face feels at least
+constexpr double inward = 1e-6;      // shift of faces on a boundary into the box, in cells
+constexpr double on_surface = 1e-9;  // depth in cells up to which a face counts as on the surface
+constexpr double shortest = 1e-3;    // least length of a link, in spacings
+constexpr double least_open = 0.03;  // least factor of the pressure increment at a cut face
 
-// Faces on a surface are fluid, whatever round-off makes of them.
+// The depth below which a face is inside, so that faces on a surface are fluid in spite of round-off.
 double depth_inside(const Domain &domain) {
   const Real3 &h = domain.spacing();
   return on_surface * (domain.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]));
@@ -25,7 +25,7 @@ double depth_inside(const Domain &domain) {
 
 }  // namespace
 
-// Image of a body that lies `shift` boxes on.
+// Index of the image of a body that is shifted by `shift` boxes.
 int RigidBodies::image_of(int body, const Int3 &shift) {
   return images * body + (shift[0] + 1) + 3 * (shift[1] + 1) + 9 * (shift[2] + 1);
 }
@@ -67,7 +67,7 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, i
     for (int image = 0; image < images; ++image) faces_.bodies.push_back({index, motion, {}});
     faces_.masses.push_back(mass);
     sources_.push_back({surface, nullptr, nullptr, place});
-    put(index, place);
+    set_position(index, place);
     for (int a = 0; a < dimension && !travels; ++a) {
       if (file)
         mark_file(a, phase->fraction[0], index);
@@ -78,7 +78,8 @@ PetscErrorCode RigidBodies::add(const SpeciesSpec &spec, const Places &places, i
   PetscFunctionReturn(0);
 }
 
-// visit(mark, image, place) for the owned faces that a body may touch.
+// Calls visit(mark, image, place) for the owned faces of component a that the body may reach. `mark` is the value in
+// inside_.
 template <class Visit>
 void RigidBodies::for_faces(int a, int index, const Visit &visit) {
   const Layout &own = domain_.layout();
@@ -104,7 +105,7 @@ void RigidBodies::for_faces(int a, int index, const Visit &visit) {
               place[0] += x.shift;
               place[1] += y.shift;
               place[2] += z.shift;
-              // A body that begins on a side of the box covers it.
+              // Shift faces on a boundary inwards, so that a body that begins on the boundary covers them.
               const int at = own.begin[a] + local[a];
               if (domain_.is_wall(a) && at == 0) place[a] += inward;
               if (domain_.is_wall(a) && at == domain_.domain_cells()[a]) place[a] -= inward;
@@ -131,11 +132,12 @@ void RigidBodies::clear(int a, int index) {
   });
 }
 
-// A slab that travels has the volume that the bodies along which it goes leave to it.
+// Corrects the volume of a travelling slab by the share that the bodies along which it slides leave to it.
 PetscErrorCode RigidBodies::measure_pistons() {
   PetscFunctionBeginUser;
   const double depth = depth_inside(domain_);
-  std::vector<double> counted(2 * faces_.count);  // faces across the axis: in the slab, and its own
+  // Faces normal to its axis: all in the slab, and those marked as its own.
+  std::vector<double> counted(2 * faces_.count);
   for (int index = 0; index < faces_.count; ++index) {
     const Species &species = species_[faces_.bodies[images * index].motion];
     if (species.spec.shape != Shape::slab || !species.spec.travels(domain_.dimension())) continue;
@@ -154,7 +156,7 @@ PetscErrorCode RigidBodies::measure_pistons() {
   PetscFunctionReturn(0);
 }
 
-// A piston goes along the tube or the plates that it is between.
+// Records a contact of two bodies, except for that of a piston with the tube or the plates along which it slides.
 void RigidBodies::note_contact(int image, int other) {
   const RigidBody &one = faces_.bodies[image], &two = faces_.bodies[other];
   if (one.index == two.index || !(faces_.motions[one.motion].travels() || faces_.motions[two.motion].travels())) return;
@@ -164,21 +166,21 @@ void RigidBodies::note_contact(int image, int other) {
   contact_ = std::max(contact_, {std::min(one.index, two.index), std::max(one.index, two.index)});
 }
 
-// Of a file a face is inside where phi, averaged to it, is above 1/2.
+// Marks the faces inside a body from a file: those where phi, averaged to the face, is above 1/2.
 void RigidBodies::mark_file(int a, ConstView phi, int index) {
   if (!level_[a]) level_[a] = Field(domain_, 1);
   const View inside = inside_[a][0], level = level_[a][0];
   const std::ptrdiff_t step = phi.stride(a);
   for_points(domain_.points(at_face[a]), [&](int i, int j, int k) {
     const double *q = phi.row(j, k) + i;
-    const double here = 0.5 - 0.5 * (q[0] + q[-step]);
+    const double value = 0.5 - 0.5 * (q[0] + q[-step]);
     if (inside(i, j, k) != 0) return;
-    level(i, j, k) = here;
-    if (here < 0) inside(i, j, k) = 1 + image_of(index, {0, 0, 0});
+    level(i, j, k) = value;
+    if (value < 0) inside(i, j, k) = 1 + image_of(index, {0, 0, 0});
   });
 }
 
-// Part of the way from a place outside to one inside, in cells of the image's own body, where the surface is.
+// Fraction of the link from a place outside to one inside the image at which the surface is, at least `shortest`.
 double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
                              double level_inside) const {
   const Source &source = sources_[image / images];
@@ -197,7 +199,8 @@ double RigidBodies::crossing(int image, const Real3 &outside, const Real3 &insid
   return std::max(shortest, 0.5 * (low + high));
 }
 
-// What a fluid face sees of the bodies around it; not cut where it sees none.
+// Classifies a fluid face: lengths and surface velocities of its links, and its share. walls = 0 if no neighbour is
+// inside.
 RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
   const Int3 &N = domain_.domain_cells(), &begin = domain_.layout().begin, local{i, j, k};
   const double *inside = inside_[a][0].row(j, k) + i;
@@ -205,7 +208,7 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
   RigidFaces::Cut cut;
   cut.i = i;
   double diagonal = 0, regular = 0;
-  Real3 least{}, place{};  // wrapped into the box, like that of the owner
+  Real3 least{}, place{};  // wrapped into the box, so that all ranks get the same bits
   for (int d = 0; d < domain_.dimension(); ++d) {
     least[d] = (d == a ? 0 : 0.5) - 0.5 * N[d];
     place[d] = least[d] + domain_.image(d, begin[d] + local[d]);
@@ -218,20 +221,21 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
       cut.link[link] = 1 / (h * h);
       regular += cut.link[link];
       if (body >= 0) {
-        // The neighbour's own place is in the box: its image may be that of another side.
-        Real3 neighbour = place, here = place;
+        // The neighbour's place is wrapped into the box, and the face's place is the one beside it.
+        Real3 neighbour = place, beside = place;
         neighbour[d] += one;
         if (!domain_.is_wall(d) && neighbour[d] < least[d]) neighbour[d] += N[d];
         if (!domain_.is_wall(d) && neighbour[d] > least[d] + N[d] - 1) neighbour[d] -= N[d];
-        here[d] = neighbour[d] - one;
-        const double part = crossing(body, here, neighbour, level ? level[0] : 0, level ? level[step] : 0);
+        beside[d] = neighbour[d] - one;
+        const double part = crossing(body, beside, neighbour, level ? level[0] : 0, level ? level[step] : 0);
         if (cut.walls != 0) note_contact(cut.body, body);
         cut.walls |= 1U << link;
         cut.body = body;
         cut.link[link] /= part;
-        here[d] += one * part;
-        for (int e = 0; e < domain_.dimension(); ++e) here[e] += faces_.ahead[faces_.bodies[body].motion][e];
-        cut.turn[link] = faces_.velocity(a, faces_.bodies[body], here, domain_.spacing(), 0, 1);
+        Real3 surface = beside;
+        surface[d] += one * part;
+        for (int e = 0; e < domain_.dimension(); ++e) surface[e] += faces_.ahead[faces_.bodies[body].motion][e];
+        cut.turn[link] = faces_.velocity(a, faces_.bodies[body], surface, domain_.spacing(), 0, 1);
       }
       diagonal += cut.link[link];
     }
@@ -240,7 +244,7 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
   return cut;
 }
 
-// Faces that see a body lie in or beside the marked part of their row or of those around it.
+// Builds the rows of component a. Cut faces are in or beside the marked part of their row or of the rows around it.
 RigidFaces::Component RigidBodies::component(int a, const Int3 &layers) {
   struct Span {
     int begin, end;
@@ -301,9 +305,9 @@ std::size_t RigidBodies::bytes() const {
   return sum;
 }
 
-// The volume between the surface of bodies that rest and the faces inside them.
+// The volume between the surface of bodies at rest and the faces inside them.
 
-// Of a body of a species, by its label; bodies of a species follow each other.
+// Index of the body of a species with this label; bodies of a species have consecutive labels and indices.
 int RigidBodies::index_of(const std::string &species, int label) const {
   for (std::size_t index = 0; index < sources_.size(); ++index) {
     const Species &own = species_[faces_.bodies[images * index].motion];
@@ -312,8 +316,8 @@ int RigidBodies::index_of(const std::string &species, int label) const {
   return -1;
 }
 
-// Every cell gives half of its solid fraction to each of its two faces of a component. A fluid face has it in excess of
-// what counts as inside; a face inside lacks what the cell has of fluid. Where bodies overlap only one of them counts.
+// Each cell adds half of its solid fraction to both of its faces of a component. A fluid face has this volume in
+// excess; a face inside lacks the fluid part of the cell. Where bodies overlap, only one of them counts.
 PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
   PetscFunctionBeginUser;
   if (!exist()) PetscFunctionReturn(0);
@@ -376,7 +380,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
   PetscFunctionReturn(0);
 }
 
-// From volume and first moments of every component of every body, in cells.
+// Sets faces_.gaps from volume and first moments, in cells, of each component of each body.
 void RigidBodies::set_gaps(const std::vector<double> &moments) {
   faces_.gaps.assign(faces_.count, {});
   const double *found = moments.data();
@@ -387,13 +391,13 @@ void RigidBodies::set_gaps(const std::vector<double> &moments) {
     }
 }
 
-// Where bodies are at a time.
+// Positions of bodies at a time.
 
 namespace {
 
-constexpr double most_lost = 0.05;  // volume of a body from a file that travels
+constexpr double most_lost = 0.05;  // largest relative loss of volume of a travelling body from a file
 
-// Moments in the coordinates of the box.
+// Moments of a rotated body in the coordinates of the box.
 RigidMass turned(const RigidMass &mass, const Rotation &R) {
   const auto &[xx, yy, zz, yz, xz, xy] = mass.second;
   const Rotation S{{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}};
@@ -411,13 +415,13 @@ RigidMass turned(const RigidMass &mass, const Rotation &R) {
 
 }  // namespace
 
-// Of a body from a file that travels: all of phi, which every rank gets.
+// Builds the surface of a travelling body from a file on all ranks, from its phi.
 PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase,
                                      std::shared_ptr<const Surface> *surface, RigidMass *mass, std::string *wrong) {
   PetscFunctionBeginUser;
   const int dimension = domain_.dimension();
   const Int3 &N = domain_.domain_cells(), &begin = domain_.layout().begin;
-  std::array<int, 6> ends{N[0], N[1], N[2], 1, 1, 1};  // first cells, and -last ones
+  std::array<int, 6> ends{N[0], N[1], N[2], 1, 1, 1};  // first cells, and minus the last ones
   for_points(domain_.rows(), [&](int i, int j, int k) {
     const Int3 local{i, j, k};
     for (int d = 0; d < 3 && phase.fraction[0](i, j, k) > 0; ++d) {
@@ -432,8 +436,8 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
   Int3 first{};
   for (int d = 0; d < dimension; ++d) {
     if (ends[d] == 0 || -ends[3 + d] == N[d] - 1)
-      *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + " reaches the sides of the box along " + "xyz"[d] +
-               ", and what moves there needs fluid around it; accepted: a cell of it, or no motion";
+      *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + " reaches the boundaries of the box along " +
+               "xyz"[d] + ", and a body that moves needs fluid around it; accepted: a cell of fluid, or no motion";
     first[d] = ends[d] - LevelMap::margin;
     box.size[d] = -ends[3 + d] - ends[d] + 1 + 2 * LevelMap::margin;
     box.spacing[d] = domain_.spacing()[d];
@@ -454,18 +458,19 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
   *surface = std::make_shared<const Surface>(LevelMap(box, dimension));
   *mass = moments(**surface, dimension);
   const double cells = std::accumulate(box.fraction.begin(), box.fraction.end(), 0.0),
-               seen = mass->volume / domain_.cell_volume();
-  if (std::fabs(seen - cells) > most_lost * cells) {
+               found_cells = mass->volume / domain_.cell_volume();
+  if (std::fabs(found_cells - cells) > most_lost * cells) {
     *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path +
              print(
-                 " moves and must be three cells thick to be seen: it would have %.4g cells instead of %.4g; "
+                 " moves and must be three cells thick to be resolved: it would have %.4g cells instead of %.4g; "
                  "accepted: a finer grid, or no motion",
-                 seen, cells);
+                 found_cells, cells);
   }
   PetscFunctionReturn(0);
 }
 
-void RigidBodies::put(int index, const BodyPlace &place) {
+// Places a body and its images.
+void RigidBodies::set_position(int index, const BodyPlace &place) {
   Source &source = sources_[index];
   Real3 centre{};
   for (int d = 0; d < domain_.dimension(); ++d)
@@ -478,14 +483,14 @@ void RigidBodies::put(int index, const BodyPlace &place) {
   if (faces_.motions[motion].turning) faces_.masses[index] = turned(species_[motion].mass, rotation(place.orientation));
   for (int image = 0; image < images; ++image) {
     const Int3 shift{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
-    Real3 &there = faces_.bodies[images * index + image].centre;
-    there = centre;
-    for (int d = 0; d < domain_.dimension(); ++d) there[d] -= shift[d] * domain_.domain_cells()[d];
+    Real3 &image_centre = faces_.bodies[images * index + image].centre;
+    image_centre = centre;
+    for (int d = 0; d < domain_.dimension(); ++d) image_centre[d] -= shift[d] * domain_.domain_cells()[d];
   }
 }
 
-// In the box: across periodic sides a body comes back on the other one.
-BodyPlace RigidBodies::place_of(const BodyPlace &start, const RigidMotion &motion, double time) const {
+// The place at a time, wrapped into the box in periodic directions.
+BodyPlace RigidBodies::position_at(const BodyPlace &start, const RigidMotion &motion, double time) const {
   BodyPlace place = start;
   const Real3 shift = motion.shift(time);
   place.orientation = turned(start.orientation, motion.angle(time));
@@ -497,7 +502,7 @@ BodyPlace RigidBodies::place_of(const BodyPlace &start, const RigidMotion &motio
   return place;
 }
 
-PetscErrorCode RigidBodies::place(double time, double surface_time) {
+PetscErrorCode RigidBodies::find_faces(double time, double surface_time) {
   PetscFunctionBeginUser;
   contact_ = {};
   faces_.ahead.assign(faces_.motions.size(), {});
@@ -515,10 +520,10 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
     const RigidMotion &motion = faces_.motions[faces_.bodies[images * index].motion];
     if (!motion.travels()) continue;
     Source &source = sources_[index];
-    BodyPlace place = place_of(source.start, motion, time);
-    put(index, place);
+    BodyPlace place = position_at(source.start, motion, time);
+    set_position(index, place);
     if (motion.turning && surface_time != time) {
-      place.orientation = place_of(source.start, motion, surface_time).orientation;
+      place.orientation = position_at(source.start, motion, surface_time).orientation;
       source.before = std::make_unique<PlacedBody>(*source.surface, domain_.domain_shape(), place);
     } else {
       source.before.reset();
@@ -541,22 +546,22 @@ PetscErrorCode RigidBodies::place(double time, double surface_time) {
     inside_[a] = {};
     level_[a] = {};
   }
-  const double count = faces_.count;  // in one number two indices have an order, so that all ranks name the same pair
+  const double count = faces_.count;  // encodes the pair in one number, so that all ranks report the same pair
   std::array<double, 4> most{faces_.speed[0], faces_.speed[1], faces_.speed[2], contact_[0] * count + contact_[1]};
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most.data(), 4, MPI_DOUBLE, MPI_MAX, domain_.comm()));
   std::copy_n(most.begin(), 3, faces_.speed.begin());
   faces_.set(layers, domain_.cells()[1] + 2 * layers[1], std::move(components));
-  touching_.clear();
+  contact_message_.clear();
   if (most[3] != 0)
-    say_touching({static_cast<int>(most[3] / count), static_cast<int>(std::fmod(most[3], count))}, time);
+    report_contact({static_cast<int>(most[3] / count), static_cast<int>(std::fmod(most[3], count))}, time);
   PetscFunctionReturn(0);
 }
 
-void RigidBodies::say_touching(const std::array<int, 2> &bodies, double time) {
+void RigidBodies::report_contact(const std::array<int, 2> &bodies, double time) {
   const auto species = [&](int index) { return species_[faces_.bodies[images * index].motion].spec; };
   const SpeciesSpec first = species(bodies[0]), second = species(bodies[1]),
                     mover = first.travels(domain_.dimension()) ? first : second;
-  touching_ = print(
+  contact_message_ = print(
       "-%s_%svelocity: two rigid bodies (%s and %s) come within a cell of each other at t = %.6g; accepted: "
       "paths with fluid between the bodies",
       mover.name.c_str(), mover.turns(domain_.dimension()) ? "angular_" : "", first.name.c_str(), second.name.c_str(),
@@ -570,7 +575,7 @@ PetscErrorCode RigidBodies::fill(double time, std::vector<Phase> *phases) const 
       const RigidMotion &motion = faces_.motions[s];
       if (!motion.travels() || phase.species != species_[s].spec.name) continue;
       Places places = species_[s].places;
-      for (BodyPlace &place : places.known) place = place_of(place, motion, time);
+      for (BodyPlace &place : places.known) place = position_at(place, motion, time);
       Phase filled;
       fill_bodies(domain_, *species_[s].surface, places, species_[s].first_label, &filled);
       phase.fraction = std::move(filled.fraction);

@@ -1,5 +1,5 @@
-// The rigid bodies of a scene: finds the faces of the velocity that are inside them, and those beside their surfaces,
-// at the start and, where bodies travel, for every step.
+// The rigid bodies of a scene. This class finds the velocity faces inside them and those beside their surfaces, at the
+// start and, if bodies travel, in every step.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -11,41 +11,42 @@
 
 namespace eulastic {
 
-/// Where the surface crosses a link is found from the shape itself; of bodies from files that stay from phi,
-/// interpolated, = 1/2, of those that travel from a LevelMap of it. The place of what travels is a function of time
-/// alone: nothing of it needs to be saved.
+/// The point where a link crosses a surface follows from the exact shape; for bodies from files it is where
+/// interpolated phi is 1/2 (bodies at rest), or follows from a LevelMap of phi (travelling bodies). The place of a
+/// travelling body is a function of time alone, so that no state needs to be saved.
 class RigidBodies {
 public:
   RigidBodies(const Domain &domain, GhostExchange &exchange);
-  /// Owned cells of `phase` are set, and all `places` are known. Collective. Bodies get their indices as they come;
-  /// `first_label`: of the first. `wrong`: one line on a body from a file that cannot travel, or nothing.
+  /// Adds the bodies of a species; their indices follow the order of calls. Owned cells of `phase` must be set, and all
+  /// `places` known. `first_label`: label of the first one. `wrong`: one line if a body from a file cannot travel, else
+  /// empty. Collective.
   PetscErrorCode add(const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase, std::string *wrong);
-  /// Of the bodies added last.
+  /// Surface of the bodies added last.
   const Surface *newest_surface() const { return species_.back().surface.get(); }
   bool exist() const { return faces_.count > 0; }
   bool travel() const { return faces_.travels; }
-  /// The faces inside at a time, and links that end where surfaces are at another; nothing can be added afterwards.
+  /// Finds the faces inside bodies at `time`, and links to surfaces at `surface_time`. No body may be added afterwards.
   /// Collective.
-  PetscErrorCode place(double time, double surface_time);
+  PetscErrorCode find_faces(double time, double surface_time);
   const RigidFaces &faces() const { return faces_; }
-  /// Of bodies that do not travel, RigidFaces::gaps from the owned solid fractions of all phases; after place().
-  /// Collective.
+  /// Computes RigidFaces::gaps of bodies that do not travel from the owned solid fractions of all phases. Call after
+  /// find_faces(). Collective.
   PetscErrorCode measure_gaps(const std::vector<Phase> &phases);
-  /// Owned phi and labels of the phases that travel, at a time. They get new memory; the rest of them is the caller's.
+  /// Sets owned phi and labels of the travelling phases at `time`, in new memory. The caller updates ghosts and rows.
   PetscErrorCode fill(double time, std::vector<Phase> *phases) const;
-  /// One line if, where they were placed last, bodies of which one travels touch.
-  const std::string &touching() const { return touching_; }
+  /// One line if, in the last find_faces(), two bodies touch of which one travels; else empty.
+  const std::string &contact_message() const { return contact_message_; }
   std::size_t bytes() const;
 
 private:
-  static constexpr int images = 27;  ///< of a body: itself and its neighbours across periodic sides
+  static constexpr int images = 27;  ///< a body and its neighbours across periodic boundaries
   static int image_of(int body, const Int3 &shift);
-  /// A body, or all bodies of a file.
+  /// A body, or all bodies of one file.
   struct Source {
-    std::shared_ptr<const Surface> surface;  ///< null: of a file, and stays
+    std::shared_ptr<const Surface> surface;  ///< null: from a file and at rest
     std::unique_ptr<PlacedBody> body;
-    std::unique_ptr<PlacedBody>
-        before;  ///< of what turns: at the time of the surfaces, but for the place of its centre
+    /// Of rotating bodies: with the orientation at surface_time, but the centre at `time`.
+    std::unique_ptr<PlacedBody> before;
     BodyPlace start;
   };
   struct Species {
@@ -53,12 +54,12 @@ private:
     Places places;
     int first_label;
     std::shared_ptr<const Surface> surface;
-    RigidMass mass;  ///< of a body that turns, in its own coordinates
+    RigidMass mass;  ///< of a rotating body, in its own coordinates
   };
   PetscErrorCode map_file(const SpeciesSpec &spec, const Phase &phase, std::shared_ptr<const Surface> *surface,
                           RigidMass *mass, std::string *wrong);
-  BodyPlace place_of(const BodyPlace &start, const RigidMotion &motion, double time) const;
-  void put(int index, const BodyPlace &place);
+  BodyPlace position_at(const BodyPlace &start, const RigidMotion &motion, double time) const;
+  void set_position(int index, const BodyPlace &place);
   int index_of(const std::string &species, int label) const;
   void set_gaps(const std::vector<double> &moments);
   PetscErrorCode measure_pistons();
@@ -72,17 +73,17 @@ private:
   RigidFaces::Cut cut_at(int a, int i, int j, int k);
   RigidFaces::Component component(int a, const Int3 &layers);
   void note_contact(int image, int other);
-  void say_touching(const std::array<int, 2> &bodies, double time);
+  void report_contact(const std::array<int, 2> &bodies, double time);
 
   const Domain &domain_;
   GhostExchange &exchange_;
   RigidFaces faces_;
-  std::vector<Source> sources_;   ///< of every body
-  std::vector<Species> species_;  ///< by motion
-  std::array<Field, 3> inside_;   ///< of every component: 1 + image of the body a face is in
-  std::array<Field, 3> level_;    ///< of files, else empty
-  std::array<int, 2> contact_{};  ///< indices of two bodies that touch, ascending; none: equal
-  std::string touching_;
+  std::vector<Source> sources_;   ///< for each body
+  std::vector<Species> species_;  ///< by index of the motion
+  std::array<Field, 3> inside_;   ///< for each component: 1 + image of the body that contains the face, else 0
+  std::array<Field, 3> level_;    ///< 1/2 - phi of bodies from files at rest, else empty
+  std::array<int, 2> contact_{};  ///< indices of two bodies in contact, ascending; equal: none
+  std::string contact_message_;
 };
 
 }  // namespace eulastic

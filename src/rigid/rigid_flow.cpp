@@ -10,10 +10,10 @@ RigidFlow::RigidFlow(Flow *flow, std::unique_ptr<RigidBodies> bodies) : flow_(*f
   flow->rigid = &bodies_->faces();
 }
 
-// The single step of the paper's artificial compressibility needs no more than the velocity of the bodies.
+// The single step of the paper's artificial compressibility needs the velocity of the bodies only.
 PetscErrorCode RigidFlow::create(std::unique_ptr<PressureSolver> *solver) {
   PetscFunctionBeginUser;
-  PetscCall(bodies_->place(flow_.now.time, flow_.now.time));
+  PetscCall(bodies_->find_faces(flow_.now.time, flow_.now.time));
   if (flow_.spec.acm_of_the_paper()) PetscFunctionReturn(0);
   const double accuracy = flow_.spec.pressure == PressureKind::acm ? 1 : 1e-6;
   auto obstacles = std::make_unique<ObstacleSolver>(flow_.domain, flow_.exchange, flow_.work, faces(), accuracy,
@@ -27,7 +27,7 @@ PetscErrorCode RigidFlow::carry(CarriedState *state) {
   std::vector<RigidLoad> known;
   PetscFunctionBeginUser;
   PetscCall(loads(&known));
-  std::vector<double *> &numbers = state->reals["rigid_loads"];  // of every body: force, torque, power
+  std::vector<double *> &numbers = state->reals["rigid_loads"];  // force, torque and power of each body
   for (RigidLoad &load : loads_) {
     for (double &force : load.force) numbers.push_back(&force);
     for (double &torque : load.torque) numbers.push_back(&torque);
@@ -40,12 +40,12 @@ PetscErrorCode RigidFlow::move_bodies(double time, double dt) {
   PetscFunctionBeginUser;
   if (!bodies_->travel()) PetscFunctionReturn(0);
   VerbScope scope(Verb::rigid);
-  PetscCall(bodies_->place(time, time - 0.5 * dt));
-  if (obstacles_) obstacles_->follow(faces());
+  PetscCall(bodies_->find_faces(time, time - 0.5 * dt));
+  if (obstacles_) obstacles_->update_faces(faces());
   PetscFunctionReturn(0);
 }
 
-// Loads from the state alone, until a step says more.
+// Sets the loads to those of the state, until a step has been made.
 PetscErrorCode RigidFlow::start_loads() {
   PetscFunctionBeginUser;
   PetscCall(bodies_->measure_gaps(flow_.now.phases));
@@ -72,19 +72,19 @@ PetscErrorCode RigidFlow::resume() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RigidFlow::impose(double time, Field &velocity) {
+PetscErrorCode RigidFlow::prescribe_velocity(double time, Field &velocity) {
   PetscFunctionBeginUser;
   impose_rigid_motion(flow_.domain, faces(), time, velocity);
   PetscFunctionReturn(0);
 }
 
-// What of the pressure a body that travels has left in closed cells would go on growing there.
+// The pressure of a travelling body in closed cells is not corrected by increments and would grow there.
 PetscErrorCode RigidFlow::prepare(double dt) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
   if (obstacles_ && bodies_->travel()) {
     if (now.pressure_before) obstacles_->copy_closed(now.pressure_before, &now.pressure);
-    PetscCall(obstacles_->extend(now.pressure));
+    PetscCall(obstacles_->extrapolate_into_closed(now.pressure));
     PetscCall(flow_.update_centre_ghosts(now.pressure, 1));
   }
   PetscCall(move_bodies(now.time + dt, dt));
@@ -112,7 +112,7 @@ PetscErrorCode RigidFlow::close_rate(const MomentumRate &rate) {
     see_rigid_surfaces(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
                        flow_.now.velocity, rate.field, flow_.slope ? &flow_.slope : nullptr);
   else
-    see_rigid_surfaces_at_once(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
+    apply_rigid_surfaces_euler(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
                                flow_.now.velocity, rate.field);
   PetscFunctionReturn(0);
 }
@@ -120,15 +120,15 @@ PetscErrorCode RigidFlow::close_rate(const MomentumRate &rate) {
 PetscErrorCode RigidFlow::constrain(double dt) {
   PetscFunctionBeginUser;
   impulse_->add_prediction(flow_.now.velocity, flow_.velocity_star);
-  PetscCall(impose(flow_.now.time + dt, flow_.velocity_star));
+  PetscCall(prescribe_velocity(flow_.now.time + dt, flow_.velocity_star));
   PetscFunctionReturn(0);
 }
 
-// The rotational update of the pressure takes all of what is wrong in a step where that expects the pressure of its
-// middle, else half.
+// The rotational update removes the whole error of a step if the step begins with the extrapolated pressure, else half.
 PetscErrorCode RigidFlow::begin_correction(Field &divergence) {
   PetscFunctionBeginUser;
-  if (obstacles_ && flow_.staggered()) PetscCall(obstacles_->spread(flow_.now.pressure_before ? 1 : 0.5, divergence));
+  if (obstacles_ && flow_.staggered())
+    PetscCall(obstacles_->scale_divergence(flow_.now.pressure_before ? 1 : 0.5, divergence));
   impulse_->set_pressure(flow_.now.pressure);
   PetscFunctionReturn(0);
 }
@@ -139,23 +139,23 @@ PetscErrorCode RigidFlow::see_increment(const Field &increment) {
   PetscFunctionReturn(0);
 }
 
-// An increment that is a formula has not been seen: the pressure has it now.
+// An increment that is a formula was not passed to see_increment(); the pressure contains it now.
 PetscErrorCode RigidFlow::end_projection(double, const Field &, Field &increment) {
   PetscFunctionBeginUser;
   if (!increment) impulse_->set_pressure(flow_.now.pressure);
   PetscFunctionReturn(0);
 }
 
-// Cut faces have their part of the increment, those inside the velocity of their body.
+// Cut faces get their part of the increment, faces inside the velocity of their body.
 PetscErrorCode RigidFlow::correct(double time, double dt, const Field &increment, Field &velocity) {
   PetscFunctionBeginUser;
   if (!flow_.spec.acm_of_the_paper())
     correct_cut_faces(flow_.domain, faces(), dt / flow_.fluid.density, increment, velocity);
-  PetscCall(impose(time, velocity));
+  PetscCall(prescribe_velocity(time, velocity));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RigidFlow::place(double time, std::vector<Phase> *phases) {
+PetscErrorCode RigidFlow::position_phases(double time, std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
   if (!bodies_->travel()) PetscFunctionReturn(0);
   PetscCall(bodies_->fill(time, phases));
@@ -166,7 +166,7 @@ PetscErrorCode RigidFlow::place(double time, std::vector<Phase> *phases) {
 
 PetscErrorCode RigidFlow::end_step() {
   PetscFunctionBeginUser;
-  if (!bodies_->touching().empty()) flow_.crowded = bodies_->touching();
+  if (!bodies_->contact_message().empty()) flow_.crowded = bodies_->contact_message();
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,5 @@
-// Rigid bodies in a flow: where they are, their part in the prediction and in the projection, and what the fluid exerts
-// on them; docs/method.md, section 19.
+// Rigid bodies in a flow: their positions, their part in prediction and projection, and the loads of the fluid on them;
+// docs/method.md, section 19.
 #pragma once
 
 #include "parts/flow.hpp"
@@ -15,8 +15,8 @@ namespace eulastic {
 class RigidFlow final : public FlowPart {
 public:
   RigidFlow(Flow *flow, std::unique_ptr<RigidBodies> bodies);
-  /// Puts the bodies to where they are now. What solves for an increment of the pressure has to know which faces are
-  /// closed: then another solver takes the place of `solver`, which becomes its preconditioner. Collective.
+  /// Places the bodies at the present time. Pressure solvers that compute an increment must know the closed faces: then
+  /// an ObstacleSolver replaces `solver`, which becomes its preconditioner. Collective.
   PetscErrorCode create(std::unique_ptr<PressureSolver> *solver);
   const RigidFaces &faces() const { return bodies_->faces(); }
 
@@ -25,7 +25,7 @@ public:
   PetscErrorCode start() override;
   PetscErrorCode recall() override;
   PetscErrorCode resume() override;
-  PetscErrorCode impose(double time, Field &velocity) override;
+  PetscErrorCode prescribe_velocity(double time, Field &velocity) override;
   double shortest_period() const override { return faces().shortest_period(); }
   PetscErrorCode prepare(double dt) override;
   PetscErrorCode begin_rate(const MomentumStep &step) override;
@@ -36,14 +36,14 @@ public:
   PetscErrorCode see_increment(const Field &increment) override;
   PetscErrorCode correct(double time, double dt, const Field &increment, Field &velocity) override;
   PetscErrorCode end_projection(double dt, const Field &divergence, Field &increment) override;
-  PetscErrorCode place(double time, std::vector<Phase> *phases) override;
+  PetscErrorCode position_phases(double time, std::vector<Phase> *phases) override;
   PetscErrorCode end_step() override;
 
-  /// What the fluid has exerted on every body in the last step, in their order; before the first one, what the state
-  /// says. Where bodies travel it costs as much as the rate of momentum. Collective.
+  /// Loads of the fluid on every body in the last step, in the order of their indices; before the first step those of
+  /// the state. With travelling bodies it costs as much as a rate of momentum. Collective.
   PetscErrorCode loads(std::vector<RigidLoad> *loads);
-  /// Adds to a dissipation by viscosity, as compact differences between faces have it, what surfaces of bodies change
-  /// in it. Collective.
+  /// Adds the correction at surfaces of bodies to a viscous dissipation from compact differences between faces.
+  /// Collective.
   PetscErrorCode add_dissipation(double *dissipation) const;
 
 private:
@@ -52,7 +52,7 @@ private:
 
   Flow &flow_;
   std::unique_ptr<RigidBodies> bodies_;
-  ObstacleSolver *obstacles_ = nullptr;  ///< the pressure solver, if it sees the bodies
+  ObstacleSolver *obstacles_ = nullptr;  ///< the pressure solver, if it is one for rigid bodies
   std::unique_ptr<RigidImpulse> impulse_;
   std::vector<RigidLoad> loads_;  ///< of step loads_step_
   std::int64_t loads_step_ = -1;

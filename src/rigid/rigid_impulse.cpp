@@ -9,23 +9,23 @@
 namespace eulastic {
 namespace {
 
-// What a link of a cut face sees: the image of a body that its neighbour is in, and the place of the cut face beside
-// it, in cells. The neighbour's own place is in the box.
-struct Seen {
+// The end of a link of a cut face: the image of a body that contains the neighbour, and the place of the cut face
+// beside it, in cells. The neighbour's place is wrapped into the box.
+struct LinkEnd {
   int body;
   Real3 place;
 };
-Seen seen_by(const Box &box, const RigidFaces &faces, int a, Int3 face, int link) {
+LinkEnd link_end(const Box &box, const RigidFaces &faces, int a, Int3 face, int link) {
   const int d = link / 2, step = link % 2 ? 1 : -1, N = box.domain_cells()[d];
-  Seen seen{0, place_of_face(box, a, face[0], face[1], face[2])};
-  const double least = (d == a ? 0 : 0.5) - 0.5 * N, neighbour = seen.place[d] + step;
-  if (!box.is_wall(d) && neighbour < least) seen.place[d] += N;
-  if (!box.is_wall(d) && neighbour > least + N - 1) seen.place[d] -= N;
+  LinkEnd end{0, place_of_face(box, a, face[0], face[1], face[2])};
+  const double least = (d == a ? 0 : 0.5) - 0.5 * N, neighbour = end.place[d] + step;
+  if (!box.is_wall(d) && neighbour < least) end.place[d] += N;
+  if (!box.is_wall(d) && neighbour > least + N - 1) end.place[d] -= N;
   face[d] += step;
   const RigidFaces::Row row = faces.row(a, face[1], face[2]);
   for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-    if (run->begin <= face[0] && face[0] < run->end) seen.body = run->body;
-  return seen;
+    if (run->begin <= face[0] && face[0] < run->end) end.body = run->body;
+  return end;
 }
 
 }  // namespace
@@ -54,8 +54,8 @@ void RigidImpulse::find_contacts() {
 
 std::size_t RigidImpulse::bytes() const {
   std::size_t sum =
-      contacts_.capacity() * sizeof(Contact) + (pressure_.capacity() + covered_.capacity()) * sizeof(double);
-  for (int a = 0; a < 3; ++a) sum += (lacks_[a].capacity() + means_.velocity[a].capacity()) * sizeof(double);
+      contacts_.capacity() * sizeof(Contact) + (pressure_.capacity() + covered_rate_.capacity()) * sizeof(double);
+  for (int a = 0; a < 3; ++a) sum += (missing_rate_[a].capacity() + means_.velocity[a].capacity()) * sizeof(double);
   return sum;
 }
 
@@ -65,7 +65,7 @@ void RigidImpulse::begin(double time, double dt, double force_time, const Field 
   dt_ = dt;
   force_ = fluid_.body_force.at(force_time);
   for (int a = 0; a < domain_.dimension(); ++a) {
-    lacks_[a].assign(faces_.cuts(a).size(), 0);
+    missing_rate_[a].assign(faces_.cuts(a).size(), 0);
     means_.velocity[a].resize(faces_.cuts(a).size());
   }
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
@@ -75,14 +75,14 @@ void RigidImpulse::begin(double time, double dt, double force_time, const Field 
   means_.factors.clear();
   for (const RigidMotion &motion : faces_.motions)
     means_.factors.push_back({motion.of_velocity.at(time), motion.of_rotation.at(time)});
-  covered_.clear();
+  covered_rate_.clear();
   for_moving_faces([&](int a, int i, int j, int k, int body) {
-    covered_.push_back(
+    covered_rate_.push_back(
         dt > 0 && motion_of(body).travels() ? (velocity_before(a, body, {i, j, k}) - velocity[a](i, j, k)) / dt : 0);
   });
 }
 
-// Where bodies that travel are, they move at the start of a step.
+// Component a of the velocity that a travelling body had at the start of the step, at a face that it covers at the end.
 double RigidImpulse::velocity_before(int a, int image, const Int3 &face) const {
   const RigidBody &body = faces_.bodies[image];
   const RigidMotion &motion = faces_.motions[body.motion];
@@ -92,7 +92,7 @@ double RigidImpulse::velocity_before(int a, int image, const Int3 &face) const {
   return faces_.velocity(a, body, place, domain_.spacing(), motion.of_velocity.at(time_), motion.of_rotation.at(time_));
 }
 
-// visit(a, i, j, k, image) for owned faces inside bodies that move.
+// Calls visit(a, i, j, k, image) for owned faces inside bodies that move.
 template <class Visit>
 void RigidImpulse::for_moving_faces(const Visit &visit) const {
   if (!faces_.moves) return;
@@ -105,12 +105,13 @@ void RigidImpulse::for_moving_faces(const Visit &visit) const {
   });
 }
 
-// What advection of second order has more than (28a), which takes the slope half way to the face ahead.
+// The term C of (28e): difference between advection of second order and (28a), which takes the slope half way to the
+// face ahead.
 double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, int k, const Field &velocity) const {
   const Strides s = strides(velocity[a]);
   const RigidMotion &motion = motion_of(cut.body);
   const double *u = velocity[a].row(j, k) + cut.i;
-  double wall[6], more = 0;
+  double wall[6], correction = 0;
   surface_velocity(faces_, cut, a, motion.of_velocity.at(time_), motion.of_rotation.at(time_), wall);
   for (int d = 0; d < domain_.dimension(); ++d) {
     const double along = carrying_velocity(velocity, a, d, cut.i, j, k), h = domain_.spacing()[d];
@@ -119,12 +120,12 @@ double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, 
     const std::ptrdiff_t step = along > 0 ? s[d] : -s[d];
     const double theta = 1 / (cut.link[behind] * h * h), slope = (u[step] - wall[behind]) / (1 + theta);
     const double curvature = 2 * ((u[2 * step] - u[step]) - slope) / (2 + theta);
-    more += std::fabs(along) / h * 0.5 * (1 - theta) * curvature;
+    correction += std::fabs(along) / h * 0.5 * (1 - theta) * curvature;
   }
-  return more;
+  return correction;
 }
 
-// What cut faces lack because only a share of their rate moves them, in the frame of what travels.
+// Sets the rate that cut faces miss because they get only their share of it, in the frame of travelling bodies.
 void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_star) {
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *before = velocity[a].row(j, k), *after = velocity_star[a].row(j, k);
@@ -132,13 +133,13 @@ void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_s
       const int i = cut->i;
       if (!owned(domain_, a, i)) continue;
       double rate = (after[i] - before[i]) / dt_;
-      double &lacks = lacks_[a][index(a, *cut)];
+      double &missing = missing_rate_[a][index(a, *cut)];
       if (motion_of(cut->body).travels()) {
-        rate -= rate_of_what_rests(domain_, faces_, *cut, a, place_of_face(domain_, a, i, j, k), time_, dt_, before + i,
+        rate -= rate_in_body_frame(domain_, faces_, *cut, a, place_of_face(domain_, a, i, j, k), time_, dt_, before + i,
                                    strides(velocity[a]));
-        if (fluid_.inertia) lacks = curved_advection(a, *cut, j, k, velocity);
+        if (fluid_.inertia) missing = curved_advection(a, *cut, j, k, velocity);
       }
-      lacks += (1 / cut->share - 1) * rate;
+      missing += (1 / cut->share - 1) * rate;
     }
   });
 }
@@ -157,11 +158,11 @@ void RigidImpulse::add_increment(const Field &increment, bool partly) {
     const std::ptrdiff_t step = increment[0].stride(a);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
       if (const int i = cut->i; owned(domain_, a, i))
-        lacks_[a][index(a, *cut)] -= (1 - cut->open) * factor * (q[i] - q[i - step]);
+        missing_rate_[a][index(a, *cut)] -= (1 - cut->open) * factor * (q[i] - q[i - step]);
   });
 }
 
-// `place` in cells, of a force along a.
+// Adds a force `push` along a that acts at `place` (in cells), and its torque.
 void RigidImpulse::add(int body, int a, const Real3 &place, double push, ExactSums *sums) const {
   const Real3 r = RigidFaces::arm(faces_.bodies[body], place, domain_.spacing());
   const int at = 6 * faces_.bodies[body].index;
@@ -174,40 +175,42 @@ void RigidImpulse::add(int body, int a, const Real3 &place, double push, ExactSu
   }
 }
 
-// The viscous terms of a cut face and of its neighbours inside, as if all were fluid, less what the cut face feels of
-// the surface. Inside, the velocity is linear: the other links of the neighbour take what one beyond it would.
+// Adds the viscous terms of a cut face and of its neighbours inside, as if all were fluid, less the friction that the
+// cut face has. The velocity inside is linear, so that the neighbour's Laplacian is that of u less the velocity of the
+// body at the cut face, along the link.
 void RigidImpulse::add_cut(int a, const RigidFaces::Cut &cut, int j, int k, ExactSums *sums) const {
   const double volume = volume_of_face(domain_, a, side_of_face(domain_, a, cut.i, j, k));
   if (volume == 0) return;
   const double mass = fluid_.density * domain_.cell_volume() * volume, nu = fluid_.kinematic_viscosity(),
                u = means_.velocity[a][index(a, cut)];
   const auto &of_body = means_.factors[faces_.bodies[cut.body].motion];
-  double wall[6], lacks = lacks_[a][index(a, cut)];
+  double wall[6], missing = missing_rate_[a][index(a, cut)];
   surface_velocity(faces_, cut, a, of_body[0], of_body[1], wall);
   for (int link = 0; link < 2 * domain_.dimension(); ++link) {
     if (!(cut.walls >> link & 1U)) continue;
-    const auto [body, here] = seen_by(domain_, faces_, a, {cut.i, j, k}, link);
-    Real3 there = here;
-    there[link / 2] += link % 2 ? 1 : -1;
-    const auto given = [&, body = body](const Real3 &place) {
+    const auto [body, place] = link_end(domain_, faces_, a, {cut.i, j, k}, link);
+    Real3 neighbour = place;
+    neighbour[link / 2] += link % 2 ? 1 : -1;
+    const auto body_velocity = [&, body = body](const Real3 &at) {
       const auto &[along, turning] = means_.factors[faces_.bodies[body].motion];
-      return faces_.velocity(a, faces_.bodies[body], place, domain_.spacing(), along, turning);
+      return faces_.velocity(a, faces_.bodies[body], at, domain_.spacing(), along, turning);
     };
     const double h = domain_.spacing()[link / 2], rate = nu / (h * h);
-    lacks += rate * (given(there) - u) - nu * cut.link[link] * (wall[link] - u);
-    add(body, a, there, mass * rate * (u - given(here)), sums);
-    add(body, a, here, mass * lacks, sums);
-    lacks = 0;  // the rest of it is that of the first link's body
+    missing += rate * (body_velocity(neighbour) - u) - nu * cut.link[link] * (wall[link] - u);
+    add(body, a, neighbour, mass * rate * (u - body_velocity(place)), sums);
+    add(body, a, place, mass * missing, sums);
+    missing = 0;  // the body of the first link gets all of it
   }
 }
 
-// Force and torque of every body, and the power of a body force, less what accelerates them, on faces inside those that
-// move along themselves: of those that travel it is in the force.
+// Sums force and torque of every body and, for bodies that move along their own surface, the power of the body force
+// less the acceleration on the faces inside; for travelling bodies the force contains it.
 PetscErrorCode RigidImpulse::sum(std::vector<double> *total) const {
   PetscFunctionBeginUser;
   ExactSums sums(7 * faces_.count);
   for (std::size_t n = 0; n < contacts_.size(); ++n) {
-    const Contact &at = contacts_[n];  // arms along d are those of forces along d, which make no torque
+    // Forces along d have no torque from arms along d, so the place of the low face suffices.
+    const Contact &at = contacts_[n];
     add(at.body, at.d, place_of_face(domain_, at.d, at.i, at.j, at.k),
         at.weight * pressure_[n] * domain_.cell_volume() / domain_.spacing()[at.d], &sums);
   }
@@ -221,24 +224,26 @@ PetscErrorCode RigidImpulse::sum(std::vector<double> *total) const {
     const RigidBody &body = faces_.bodies[image];
     const RigidMotion &motion = motion_of(image);
     const Real3 place = place_of_face(domain_, a, i, j, k), r = RigidFaces::arm(body, place, domain_.spacing());
-    const double fluid = mass * volume_of_face(domain_, a, side_of_face(domain_, a, i, j, k)), rate = covered_[at++];
-    const auto given = [&](double along, double turning) {
+    const double fluid = mass * volume_of_face(domain_, a, side_of_face(domain_, a, i, j, k)),
+                 rate = covered_rate_[at++];
+    const auto body_velocity = [&](double along, double turning) {
       return faces_.velocity(a, body, place, domain_.spacing(), along, turning);
     };
     if (motion.travels())
       add(image, a, place, fluid * (force_[a] - motion.acceleration(r, middle())[a] - rate), &sums);
     else
       sums.add(6 * faces_.count + body.index,
-               fluid * (force_[a] - given(motion.of_velocity.rate(middle()), motion.of_rotation.rate(middle()))) *
-                   given(motion.of_velocity.at(middle()), motion.of_rotation.at(middle())));
+               fluid *
+                   (force_[a] - body_velocity(motion.of_velocity.rate(middle()), motion.of_rotation.rate(middle()))) *
+                   body_velocity(motion.of_velocity.at(middle()), motion.of_rotation.at(middle())));
   });
   total->assign(7 * faces_.count, 0);
   PetscCall(sums.reduce(domain_.comm(), total->data()));
   PetscFunctionReturn(0);
 }
 
-// Between the surface and the faces inside the stress balances the body force and what accelerates the body, in its
-// volume less that of these faces.
+// Adds the contribution of the gap between the surface and the faces inside, where the stress balances the body force
+// and the acceleration of the body; (28d), (28e).
 PetscErrorCode RigidImpulse::measure(std::vector<RigidLoad> *loads) const {
   PetscFunctionBeginUser;
   VerbScope scope(Verb::rigid);

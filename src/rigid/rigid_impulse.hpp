@@ -1,5 +1,5 @@
-// What a step exchanges with rigid bodies: their loads are the momentum that the fluid lacks after it (docs/method.md,
-// section 19).
+// The momentum that a step exchanges with rigid bodies, from which their loads follow; docs/method.md, section 19,
+// (28c) to (28e).
 #pragma once
 
 #include "base/petsc.hpp"
@@ -15,28 +15,29 @@ class ExactSums;
 
 class RigidImpulse {
 public:
-  /// `faces` must outlive it; where bodies travel every step begins with other ones.
+  /// `faces` must outlive this; if bodies travel they change in every step.
   RigidImpulse(const Domain &domain, const RigidFaces &faces, const Fluid &fluid);
 
-  /// Begins a step of dt (0: there is none, loads are those of a state): the velocity is that of `time`, body forces
-  /// are those of `force_time`, the faces are those of the end of the step.
+  /// Begins a step of dt (0: no step, loads are those of a state). `velocity` is that of `time`, body forces are those
+  /// of `force_time`, and the faces are those of the end of the step.
   void begin(double time, double dt, double force_time, const Field &velocity);
-  /// Where viscous stages add what they change.
+  /// The averages that viscous stages accumulate.
   RigidMeans *means() { return &means_; }
-  /// After the stages: what cut faces lack because only a share of their rate moves them.
+  /// Adds the rate that cut faces miss because of their share. Call after the stages.
   void add_prediction(const Field &velocity, const Field &velocity_star);
-  /// The pressure that acts in the step, less what increments add to it; owned cells are read.
+  /// Sets the pressure at the start of the projection, to which increments are added. Reads owned cells.
   void set_pressure(const Field &pressure);
-  /// An increment that corrects the velocity; one ghost layer. `partly`: cut faces as far as they are open.
+  /// Adds an increment that corrects the velocity; reads one ghost layer. `partly`: cut faces are corrected only as far
+  /// as they are open.
   void add_increment(const Field &increment, bool partly);
-  /// Mean loads over the step, or, where begin() and set_pressure() were all, those of a state. Exact sums: the same
-  /// bits on any ranks. Collective.
+  /// Computes the mean loads over the step, or those of a state after begin() and set_pressure() alone. Sums are exact,
+  /// so that the bits do not depend on the ranks. Collective.
   PetscErrorCode measure(std::vector<RigidLoad> *loads) const;
   std::size_t bytes() const;
 
 private:
-  /// A body on a face of a cell across direction d; weight: 1 of the high face, -1 of the low one; none
-  /// if it is on both.
+  /// A body on a face of a cell normal to direction d. `weight`: 1 for the high face, -1 for the low one. Cells with
+  /// the body on both have none.
   struct Contact {
     int d, i, j, k, body;
     double weight;
@@ -57,12 +58,14 @@ private:
   const RigidFaces &faces_;
   Fluid fluid_;
   double time_ = 0, dt_ = 0;
-  Real3 force_{};  // per mass
+  Real3 force_{};  // body force per mass
   RigidMeans means_;
-  std::array<std::vector<double>, 3> lacks_;  // by the place among cuts: dv/dt that cut faces did not get
-  std::vector<double> covered_;  // of every face inside what travels: what it had less velocity than the body, over dt
+  std::array<std::vector<double>, 3> missing_rate_;  // dv/dt that cut faces did not get, by index among the cuts
+  // Rate V_b - v of (28e) for each face inside a travelling body: excess of the body's velocity over that of the face,
+  // over dt.
+  std::vector<double> covered_rate_;
   std::vector<Contact> contacts_;
-  std::vector<double> pressure_;  // of every contact
+  std::vector<double> pressure_;  // at every contact
 };
 
 }  // namespace eulastic

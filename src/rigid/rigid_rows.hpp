@@ -1,4 +1,4 @@
-// What verbs of rigid bodies in the momentum equation share: rows with faces inside or cut, and what cut faces see.
+// Functions that the routines of rigid bodies share: rows with faces inside or cut, and friction on cut faces.
 #pragma once
 
 #include "field/field.hpp"
@@ -11,26 +11,27 @@ using Strides = std::array<std::ptrdiff_t, 3>;
 
 inline Strides strides(ConstView q) { return {1, q.sy, q.sz}; }
 
-// The velocity of the surface on the links of a cut face that end there.
+// Sets `wall` to component a of the surface velocity at the end of each link.
 inline void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double of_velocity,
                              double of_rotation, double *wall) {
   const double along = faces.motions[faces.bodies[cut.body].motion].velocity[a] * of_velocity;
   for (int link = 0; link < 6; ++link) wall[link] = along + cut.turn[link] * of_rotation;
 }
 
-// Component d of the velocity at a face of component a.
+// Component d of the velocity, averaged to a face of component a.
 inline double carrying_velocity(const Field &velocity, int a, int d, int i, int j, int k) {
   const double *v = velocity[d].row(j, k) + i;
-  const std::ptrdiff_t next = velocity[d].stride(d), back = velocity[d].stride(a);
-  return d == a ? v[0] : 0.25 * ((v[0] + v[next]) + (v[-back] + v[next - back]));
+  const std::ptrdiff_t next = velocity[d].stride(d), below = velocity[d].stride(a);
+  return d == a ? v[0] : 0.25 * ((v[0] + v[next]) + (v[-below] + v[next - below]));
 }
 
+// Laplacian without bodies.
 inline double regular_laplacian(const Box &box, const double *u, const Strides &s) {
   const InverseSquares h = box.inverse_squares();
   return box.dimension() == 2 ? kernels::laplacian<2>(u, s[1], s[2], h) : kernels::laplacian<3>(u, s[1], s[2], h);
 }
 
-// visit(component, row, j, k) for all owned rows that a body is in or beside; returns how many cut faces they have.
+// Calls visit(component, row, j, k) for all owned rows in or beside a body; returns the number of cut faces in them.
 template <class Visit>
 double for_rigid_rows(const Box &box, const RigidFaces &faces, const Visit &visit) {
   double cut_faces = 0;
@@ -45,27 +46,28 @@ double for_rigid_rows(const Box &box, const RigidFaces &faces, const Visit &visi
   return cut_faces;
 }
 
-// -1 on the low side of the box that is normal to a, 1 on the high one, else 0.
+// -1 for a face on the low boundary normal to a, 1 on the high one, else 0.
 inline int side_of_face(const Box &box, int a, int i, int j, int k) {
   if (!box.is_wall(a)) return 0;
   const int at = box.layout().begin[a] + std::array{i, j, k}[a];
   return at == 0 ? -1 : at == box.domain_cells()[a] ? 1 : 0;
 }
 
-// In cells: a face on an open side has half of one, on others the side gives the velocity.
+// Control volume of a face in cells: half of one on an open boundary; none on other boundaries, which prescribe the
+// velocity.
 inline double volume_of_face(const Box &box, int a, int side) {
   return side == 0 ? 1 : box.is_open(a, side > 0) ? 0.5 : 0;
 }
 
-// Laplacian of u in what sides of the box give to the tangential velocity of a face beside them.
+// Contribution of the boundaries of the box to the Laplacian of a tangential velocity beside them.
 inline double laplacian_of_sides(const Box &box, int a, int i, int j, int k, ConstView u) {
   double sum = 0;
   for (int d = 0; d < box.dimension(); ++d) {
     if (d == a || !box.is_wall(d)) continue;
     const int at = box.layout().begin[d] + std::array{i, j, k}[d];
-    const double *here = &u(i, j, k), square = box.spacing()[d] * box.spacing()[d];
-    if (at == 0) sum += (here[-u.stride(d)] - here[0]) / square;
-    if (at == box.domain_cells()[d] - 1) sum += (here[u.stride(d)] - here[0]) / square;
+    const double *value = &u(i, j, k), square = box.spacing()[d] * box.spacing()[d];
+    if (at == 0) sum += (value[-u.stride(d)] - value[0]) / square;
+    if (at == box.domain_cells()[d] - 1) sum += (value[u.stride(d)] - value[0]) / square;
   }
   return sum;
 }
@@ -74,7 +76,7 @@ inline bool owned(const Box &box, int a, int i) { return i >= 0 && i < box.point
 
 inline double viscous_rates_flops(int dimension) { return 12 + 10 * dimension; }
 
-// The viscous rate at a cut face, and how much of it a regular face has.
+// Laplacian at a cut face by (28), and without bodies.
 struct Viscous {
   double cut, regular;
 };
@@ -86,10 +88,10 @@ inline Viscous viscous_rates(const Box &box, const RigidFaces &faces, const Rigi
   return {cut.laplacian(u, s, box.dimension(), wall), regular_laplacian(box, u, s)};
 }
 
-// dV/dt - V.grad u beside a body that travels, V its velocity at `place`: what a face sees of a flow that does not
-// change about the body. Upwind and half implicit: where the surface comes, u - u_s falls in a step as the distance to
-// it does.
-inline double rate_of_what_rests(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a,
+// The rate dV/dt - V.grad u of (28b) beside a travelling body, with V its velocity at `place`: that of a flow at rest
+// in the frame of the body. Upwind and half implicit: where the surface approaches, u - u_s decreases with the
+// distance.
+inline double rate_in_body_frame(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a,
                                  Real3 place, double time, double dt, const double *u, const Strides &s) {
   const RigidBody &body = faces.bodies[cut.body];
   const RigidMotion &motion = faces.motions[body.motion];

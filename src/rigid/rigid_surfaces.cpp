@@ -20,7 +20,7 @@ void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosit
       const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
       if (faces.motions[faces.bodies[cut->body].motion].travels())
-        out[cut->i] += (1 - cut->share) * rate_of_what_rests(box, faces, *cut, a, place_of_face(box, a, cut->i, j, k),
+        out[cut->i] += (1 - cut->share) * rate_in_body_frame(box, faces, *cut, a, place_of_face(box, a, cut->i, j, k),
                                                              time, dt, u + cut->i, strides(velocity[a]));
       if (m) m[cut->i] *= cut->share;
     }
@@ -33,7 +33,7 @@ void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosit
   scope.flops(cut_faces * (viscous_rates_flops(box.dimension()) + (faces.travels ? 70 : 5)));
 }
 
-// By WENO5 a cut face in the wind of a body would take its difference from inside, across the kink of the velocity.
+// With WENO5 a cut face downstream of a body would take its difference from inside, across the kink of the velocity.
 void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, double epsilon, double scale,
                           const Field &velocity, Field *advection, Field &rate) {
   VerbScope scope(Verb::rigid);
@@ -43,7 +43,7 @@ void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, 
       if (!owned(box, a, cut->i)) continue;
       const RigidMotion &motion = faces.motions[faces.bodies[cut->body].motion];
       const double *u = velocity[a].row(j, k) + cut->i;
-      double wall[6], more = 0;
+      double wall[6], correction = 0;
       surface_velocity(faces, *cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
       for (int d = 0; d < box.dimension(); ++d) {
         const double along = carrying_velocity(velocity, a, d, cut->i, j, k), inverse = 1 / box.spacing()[d];
@@ -52,17 +52,17 @@ void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, 
         const bool between = cut->walls >> ahead & 1U;
         const double last = between ? wall[ahead] : u[along > 0 ? s[d] : -s[d]];
         const double length = (1 / cut->link[behind] + 1 / cut->link[ahead]) * inverse;
-        more += inverse * along * kernels::weno5_difference(u, s[d], along, epsilon) -
-                std::fabs(along) * (last - wall[behind]) / length;
+        correction += inverse * along * kernels::weno5_difference(u, s[d], along, epsilon) -
+                      std::fabs(along) * (last - wall[behind]) / length;
       }
-      if (advection) (*advection)[a].row(j, k)[cut->i] += more;
-      rate[a].row(j, k)[cut->i] += scale * more;
+      if (advection) (*advection)[a].row(j, k)[cut->i] += correction;
+      rate[a].row(j, k)[cut->i] += scale * correction;
     }
   });
   scope.flops(cut_faces * (12 + box.dimension() * 8));
 }
 
-void see_rigid_surfaces_at_once(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
+void apply_rigid_surfaces_euler(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
                                 double dt, const Field &velocity, Field &velocity_star) {
   VerbScope scope(Verb::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
@@ -178,7 +178,7 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
     if (cut->i >= begin && cut->i < end) out[cut->i] = held[at++];
 }
 
-// Dissipation by viscosity beside rigid bodies.
+// Viscous dissipation beside rigid bodies.
 
 PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
                                          const Field &velocity, double *dissipation) {
@@ -200,7 +200,7 @@ PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces 
       const Viscous rates = viscous_rates(domain, faces, *cut, a, time, u, strides(velocity[a]));
       sums.add(0, volume * (*u - of_body) * (rates.regular - rates.cut));
     }
-    // Faces inside feel no friction on sides of the box, where a body has no surface.
+    // Subtract the friction of faces inside on boundaries of the box, where a body has no surface.
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
       for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.points_end(0, a == 0)); ++i) {
         const double of_body = velocity[a](i, j, k);

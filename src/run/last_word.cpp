@@ -30,18 +30,19 @@ std::string first_word(const Config &config, int ranks) {
 
 std::string last_word(const ParseResult &parsed, const Ending &end) {
   static const std::map<std::string, std::string> words{
-      {"time_end", "came to its end"},      {"steps", "came to its -time_steps_max"},
+      {"time_end", "reached -time_end"},    {"steps", "reached -time_steps_max"},
       {"signal", "stopped by a signal"},    {"wall_limit", "stopped by -stop_after_minutes"},
-      {"guard", "stopped by a guard"},      {"nonfinite", "stopped, numbers are not finite"},
+      {"guard", "stopped by a guard"},      {"nonfinite", "stopped because numbers are not finite"},
       {"output_failed", "could not write"},
   };
   const std::string &directory = parsed.config.output.directory;
   const std::string place = print(" at t = %.9g, step %lld; results: ", end.time, static_cast<long long>(end.step));
   std::string line = "eulastic: " + words.at(end.reason) + place + directory;
-  if (end.checkpoint.empty()) return line + "; no checkpoint to go on from";
+  if (end.checkpoint.empty()) return line + "; there is no checkpoint to continue from";
   const bool whole = end.reason == "time_end" || end.reason == "steps";
   const bool wrong = end.reason == "guard" || end.reason == "nonfinite";
-  line += whole ? "; longer: " : "; goes on from " + end.checkpoint + (wrong ? ", with what the error names: " : ": ");
+  line += whole ? "; to continue: "
+                : "; to continue from " + end.checkpoint + (wrong ? ", with the remedy of the error: " : ": ");
   if (end.ranks > 1) line += "mpiexec -n " + std::to_string(end.ranks) + " ";
   line += quoted(parsed.program) + " " + quoted(directory + "/options.txt") + " -restart " + quoted(directory) +
           " -output_dir " + quoted(directory);

@@ -50,8 +50,8 @@ int act(ParseResult &parsed) {
   if (parsed.config.check_only && parsed.config.ranks > 0) ranks = parsed.config.ranks;
   if (parsed.error.empty() && parsed.config.check_only && parsed.config.balance && ranks > 1)
     parsed.error =
-        "-balance: -check_only on more than one rank speaks of equal parts only, a run cuts by what its fields hold; "
-        "accepted: -balance false with it";
+        "-load_balance: -check_only on more than one rank assumes equal parts, whereas the cuts of a run follow from "
+        "its fields; accepted: -load_balance false with -check_only";
   if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Domain::why_not(parsed.config.grid, ranks) : "";
   if (!parsed.error.empty()) {
     print_error(parsed.error);

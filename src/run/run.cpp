@@ -223,7 +223,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
   PetscFunctionReturn(0);
 }
 
-// -balance, of what has been set up: on another grid, if that is better, all of it is set up once more.
+// -load_balance, of what has been set up: on another grid, if that is better, all of it is set up once more.
 PetscErrorCode balance(const std::string &restarted_from, Domain *domain, Run *run, std::string *line,
                        std::string *refusal) {
   PetscFunctionBeginUser;
@@ -234,7 +234,7 @@ PetscErrorCode balance(const std::string &restarted_from, Domain *domain, Run *r
   if (config.grid.starts[0].empty()) PetscFunctionReturn(0);
   PetscCall(check_sizes(domain->comm(), config, &too_large));
   if (!too_large.empty()) {
-    *line += "; the even split stays: " + too_large;
+    *line += "; the even split is kept: " + too_large;
     PetscFunctionReturn(0);
   }
   run->solver = {};
@@ -294,10 +294,9 @@ PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
   PetscCall(PetscPrintf(domain.comm(), "restart from %s: t = %.9g, step %lld\n", restarted_from.c_str(),
                         run->solver.state().time, static_cast<long long>(run->solver.state().step)));
   if (thrown_away > 0)
-    PetscCall(
-        PetscPrintf(domain.comm(),
-                    "what the directory holds after that, %.3g of simulated time, is thrown away and computed again\n",
-                    thrown_away));
+    PetscCall(PetscPrintf(domain.comm(),
+                          "later output in the directory, %.3g of simulated time, is discarded and computed again\n",
+                          thrown_away));
   PetscFunctionReturn(0);
 }
 

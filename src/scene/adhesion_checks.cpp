@@ -63,7 +63,7 @@ std::string check_pair(const Config &config, const AdhesionPair &pair) {
   const bool on_grid = !pair.to_wall() && (config.species[pair.second].law == Law::rigid ||
                                            config.species[pair.second].material().attached);
   if (!pair.to_wall() && !on_grid && pair.low[0] != -HUGE_VAL)
-    return option_of(pair, "region") + ": has a meaning only with a wall, or a species that is rigid or attached";
+    return option_of(pair, "region") + ": applies only with a wall, or a species that is rigid or attached";
   if (on_grid && pair.law.reach > foot_reach * shortest)
     return option_of(pair, "reach") + ": " + to_text(pair.law.reach) + " is more than " + std::to_string(foot_reach) +
            " cells, as far as surfaces on the grid are looked for; accepted: at most " + to_text(foot_reach * shortest);
@@ -80,7 +80,8 @@ std::string check_adhesion(const Config &config) {
   for (const AdhesionPair &pair : config.adhesion.pairs)
     if (const std::string wrong = check_pair(config, pair); !wrong.empty()) return wrong;
   if (!config.adhesion.pairs.empty() && has_feeders(config.sides))
-    return "-adhesion: bodies that an inlet generator lets in have no receptors; accepted: without -inflow_..._feeder";
+    return "-adhesion: bodies that an inlet generator lets in have no receptors; accepted: without "
+           "-boundary_..._generator_length";
   return {};
 }
 

@@ -157,8 +157,8 @@ PetscErrorCode balance_ranks(const Solver &solver, GridSpec *spec, std::string *
   if (solver.domain().ranks() == 1)
     *line = print("balance: one rank has all cells");
   else if (spec->starts[0].empty())
-    *line =
-        print("balance: the even split stays, heaviest rank %.3g of the mean, at best %.3g (estimate)", before, after);
+    *line = print("balance: the even split is kept, heaviest rank %.3g of the mean, at best %.3g (estimate)", before,
+                  after);
   else
     *line = print("balance: heaviest rank %.3g -> %.3g of the mean (estimate)", before, after);
   PetscFunctionReturn(0);

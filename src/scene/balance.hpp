@@ -1,4 +1,4 @@
-// -balance: where ranks begin so that they have about as much to do, rather than as many cells.
+// -load_balance: where ranks begin so that they have about as much to do, rather than as many cells.
 #pragma once
 
 #include "base/petsc.hpp"

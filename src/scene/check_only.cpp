@@ -182,7 +182,7 @@ public:
       dt = config_.time.step;
       name = "-time_step";
       if (const char *broken = limits.broken(dt))
-        report.line("warning", "-time_step %g breaks the %s limit", dt, broken);
+        report.line("warning", "-time_step %g exceeds the %s limit", dt, broken);
     }
     if (!std::isfinite(dt)) dt = config_.time.end, name = "-time_end: nothing limits it";
     double steps = std::ceil(config_.time.end / dt);

@@ -38,14 +38,15 @@ struct BoundaryControl {
   bool is_wall(int d, int high) const { return is(SideKind::wall, d, high); }
 };
 
-/// What is said of one inflow or pressure side. Numbers over time are a number or a file, as given; empty: not given.
+/// What the options of one wall, inflow or pressure boundary say. `velocity`, `flow_rate` and `pressure` are a number
+/// or the path of a table over time, as given; empty: not given.
 struct OpeningSpec {
   std::string profile = "uniform";  ///< uniform, developed, or a file
-  std::string velocity, flow_rate;  ///< into the box
-  double frequency = 0, phase = 0;  ///< of these
-  double feeder = 0;                ///< length of the stretch that feeds the side; 0: none
-  double value = 0;                 ///< the pressure
-  std::string table;                ///< file of the pressure over time
+  std::string velocity;             ///< into the box; or 3 numbers, the velocity of a wall
+  std::string flow_rate;            ///< into the box
+  std::string pressure = "0";       ///< on the boundary
+  double frequency = 0, phase = 0;  ///< of velocity and flow rate: angular, 1 / time, and rad
+  double feeder = 0;                ///< length of the inlet generator; 0: none
   double period = 0;                ///< after which the table of velocity, flow rate or pressure repeats; 0: never
   bool hold = false;                ///< the first and the last value of the table hold before and after it
   double resistance = 0;            ///< behind the side

@@ -71,8 +71,8 @@ std::string check_inflow_balance(const Config &config) {
       names += (names.empty() ? "-boundary_" : ", -boundary_") + side_name(d, high);
     }
   const std::string way_out =
-      " and has no way out; accepted: a pressure or outflow side, or inflow sides whose flow rates have the sum 0 at "
-      "every time";
+      " and cannot leave the box; accepted: a pressure or outflow boundary, or inflow boundaries whose flow rates have "
+      "the sum 0 at every time";
   double largest = 0, slope = 0;
   std::map<double, std::complex<double>> cosines;
   for (const Inflow &inflow : inflows) {
@@ -83,14 +83,14 @@ std::string check_inflow_balance(const Config &config) {
   }
   for (const auto &[frequency, sum] : cosines)
     if (std::abs(sum) > round_off * largest)
-      return names + ": up to " + to_text(std::abs(sum)) + " volume/time comes in at the angular frequency " +
+      return names + ": up to " + to_text(std::abs(sum)) + " volume/time enters at the angular frequency " +
              to_text(frequency) + way_out;
   for (const double time : row_times(inflows, config.time.end)) {
     double sum = 0;
     for (const Inflow &inflow : inflows)
       if (!inflow.oscillates()) sum += inflow.course->at(time) * inflow.area;
     if (std::fabs(sum) > round_off * (largest + slope * time))
-      return names + ": " + to_text(sum) + " volume/time comes in at time " + to_text(time) + way_out;
+      return names + ": " + to_text(sum) + " volume/time enters at time " + to_text(time) + way_out;
   }
   return {};
 }

@@ -58,7 +58,7 @@ std::string side_line(const Config &config, int d, int high) {
   const OpenPart &part = config.open_parts[d][high];
   const SideKind kind = config.sides[d][high].kind;
   const char *what = kind == SideKind::inflow ? "inflow" : kind == SideKind::pressure ? "pressure" : "outflow";
-  std::string line = "side " + side_name(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
+  std::string line = "boundary " + side_name(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
                      number(part.area) + " of " + number(area_of_side(config, d));
   if (part.lumens > 1) line += ", " + std::to_string(part.lumens) + " lumens, the widest";
   if (std::isfinite(part.width))
@@ -96,14 +96,14 @@ std::vector<std::string> lumen_warnings(const Config &config) {
     const OpenPart &part = config.open_parts[d][high];
     const std::string side = "-boundary_" + side_name(d, high) + ": ";
     if (part.lumens == 0 && part.share < 1)
-      warnings.push_back(side + "rigid bodies cover all of this open side, nothing passes it");
+      warnings.push_back(side + "rigid bodies cover all of this open boundary, so that nothing passes it");
     if (part.lumens > 0 && part.cells < least_cells * (1 - round_off))
-      warnings.push_back(side + "only " + number(part.cells, 3) +
-                         " cells across the lumen: with less than 8 its flow is wrong by more than some per cent, 16 "
-                         "give it within 1 %");
+      warnings.push_back(
+          side + "only " + number(part.cells, 3) +
+          " cells across the lumen: with fewer than 8 the error of its flow is several per cent, with 16 below 1 %");
     if (const double reynolds = reynolds_number(config, d, high); reynolds > most_reynolds)
       warnings.push_back(side + "Reynolds number " + number(reynolds, 3) +
-                         " of the lumen: above 1e4 a flow is turbulent, of which there is no model");
+                         " of the lumen: a flow above 1e4 is turbulent, and there is no model of turbulence");
   });
   double box = 1;
   for (int d = 0; d < (flat(config) ? 2 : 3); ++d) box *= config.grid.length[d];
@@ -113,7 +113,7 @@ std::vector<std::string> lumen_warnings(const Config &config) {
     if (spec.shape == Shape::voxels && config.solid_volumes[s] > box * (1 - round_off))
       warnings.push_back(option + "_voxels: fills all of the box and leaves no fluid");
     if (is_tube(spec.shape) && volume_in_box(spec, config.grid) < round_off * box)
-      warnings.push_back(option + "_radius: the lumen is as wide as the box, so that the tube fills nothing of it");
+      warnings.push_back(option + "_radius: the lumen is as wide as the box, so that the tube has no wall in it");
   }
   return warnings;
 }

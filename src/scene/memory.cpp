@@ -114,7 +114,7 @@ double ghosted_cells(const Config &config, const Int3 &parts) {
 std::string too_little(int ranks, double needed, double limit, double share) {
   return print(
       "-grid_cells: the fields need about %.4g GB on a node (%d ranks), which has %.4g GB; accepted: fewer "
-      "cells, more nodes, or another -guard_memory (%g now, 0 = off)",
+      "cells, more nodes, or another -guard_memory (%g now; off disables the check)",
       1e-9 * needed, ranks, 1e-9 * limit, share);
 }
 

@@ -200,17 +200,18 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
       covered = side;
   });
   if (!inlet.empty())
-    return "-boundary_" + inlet + ": inflow, but rigid bodies cover what would come in; accepted: a side that is open";
+    return "-boundary_" + inlet +
+           ": rigid bodies cover all of this inflow boundary; accepted: a boundary that is partly open";
   if (outlet.empty() && !covered.empty())
-    return "-inflow_" + covered +
-           "_velocity: rigid bodies cover a part of the side, and what comes in elsewhere must balance it, as no side "
-           "is open; accepted: -inflow_" +
+    return "-boundary_" + covered +
+           "_velocity: rigid bodies cover a part of this boundary, and no boundary is open, so that the inflow rates "
+           "must balance; accepted: -boundary_" +
            covered + "_flow_rate";
   bool comes_in = false;
   for_crossed_sides(config, [&](int d, int high) { comes_in |= config.sides[d][high].kind == SideKind::inflow; });
   if (comes_in && !outlet.empty() && !way_out)
     return "-boundary_" + outlet +
-           ": rigid bodies cover all sides through which the inflow could leave; accepted: a side that is open";
+           ": rigid bodies cover all boundaries through which the inflow could leave; accepted: an open boundary";
   return {};
 }
 

@@ -67,23 +67,24 @@ std::string extend_table(const OpeningSpec &spec, const std::string &side, const
                          const std::string &file, double end, TimeCourse *course) {
   if (course->table.empty()) {
     if (spec.period == 0 && !spec.hold) return {};
-    return side + (spec.hold ? "_hold" : "_period") + ": has no meaning without a table; accepted: beside a table";
+    return side + (spec.hold ? "_table_hold" : "_table_period") + ": applies only to a table; accepted: with a table";
   }
-  if (spec.hold && spec.period > 0) return side + "_hold: given beside " + side + "_period; accepted: one of them";
+  if (spec.hold && spec.period > 0)
+    return side + "_table_hold: given beside " + side + "_table_period; accepted: one of them";
   const std::string own = file + " says \"# period " + to_text(course->period) + "\"";
   if (spec.hold && course->period > 0)
-    return side + "_hold: " + own + " and cannot be held, too; accepted: false, or a table without a period";
+    return side + "_table_hold: " + own + " and cannot be held, too; accepted: false, or a table without a period";
   if (spec.hold) return {};
   if (spec.period > 0 && course->period > 0 && std::fabs(spec.period / course->period - 1) > round_off)
-    return side + "_period: " + to_text(spec.period) + ", but " + own + "; accepted: the same, or one of them";
-  if (spec.period > 0) return repeat(side + "_period", spec.period, course);
+    return side + "_table_period: " + to_text(spec.period) + ", but " + own + "; accepted: the same, or one of them";
+  if (spec.period > 0) return repeat(side + "_table_period", spec.period, course);
   if (course->period > 0) return repeat(option + ": the period of " + file, course->period, course);
   const double first = course->table.front()[0], last = course->table.back()[0];
   if (first <= 0 && last >= end * (1 - round_off)) return {};
   return option + ": " + file + " goes from time " + to_text(first) + " to " + to_text(last) + ", the run from 0 to " +
          to_text(end) + "; accepted: a table of all the run, " + side +
-         "_period to repeat it (in the file: # period T), or " + side +
-         "_hold true to hold its first and its last value";
+         "_table_period to repeat it (in the file: # period T), or " + side +
+         "_table_hold true to hold its first and its last value";
 }
 
 std::size_t cells_of_side(const Config &config, int d) {
@@ -127,16 +128,26 @@ std::string read_profile(const Config &config, int d, int high, SideProfile *pro
   if (!wrong.empty()) return wrong;
   const std::size_t cells = cells_of_side(config, d);
   if (profile->size() != cells)
-    return spec.profile + " has " + std::to_string(profile->size()) + " numbers; accepted: one per cell of the side, " +
-           std::to_string(cells);
+    return spec.profile + " has " + std::to_string(profile->size()) +
+           " numbers; accepted: one per cell of the boundary, " + std::to_string(cells);
   *mean = make_mean_one(profile);
   if (!std::isfinite(1 / *mean)) return spec.profile + ": its mean is 0; accepted: a flow into the box";
   return {};
 }
 
+std::string resolve_wall(const Config &config, int d, int high, Side *side) {
+  const OpeningSpec &spec = config.openings[d][high];
+  side->motion = {{}, spec.frequency, spec.phase};
+  if (spec.velocity.empty()) return {};
+  const std::string wrong = read_reals(spec.velocity, any_number, side->motion.velocity.data(), 3);
+  if (wrong.empty()) return {};
+  return "-boundary_" + side_name(d, high) + "_velocity: " + wrong +
+         "; accepted: for a wall 3 numbers, separated by commas";
+}
+
 std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   const OpeningSpec &spec = config.openings[d][high];
-  const std::string name = "-inflow_" + side_name(d, high);
+  const std::string name = "-boundary_" + side_name(d, high);
   if (!spec.velocity.empty() && !spec.flow_rate.empty())
     return name + "_flow_rate: given beside " + name + "_velocity; accepted: one of them";
   SideProfile profile;
@@ -155,7 +166,7 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   if (!text.empty())
     if (std::string wrong = read_course(text, &course); !wrong.empty()) return option + ": " + wrong;
   if (!course.table.empty() && (spec.frequency != 0 || spec.phase != 0))
-    return name + "_frequency: has no meaning beside a table; accepted: 0, and phase 0";
+    return name + "_angular_frequency: does not apply to a table; accepted: 0, and phase 0";
   if (std::string wrong = extend_table(spec, name, option, text, config.time.end, &course); !wrong.empty())
     return wrong;
   if (flow) {
@@ -170,7 +181,7 @@ std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
   const double length = config.openings[d][high].feeder, h = config.grid.length[d] / config.grid.cells[d];
   constexpr int least = 8, left = 8;  // cells
   if (length == 0) return {};
-  const std::string name = "-inflow_" + side_name(d, high) + "_feeder: ";
+  const std::string name = "-boundary_" + side_name(d, high) + "_generator_length: ";
   const double cells = std::round(length / h), most = config.grid.cells[d] - left;
   if (cells < least || cells > most)
     return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: from " + to_text(least) + " to " +
@@ -179,7 +190,7 @@ std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
     return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: a whole number, such as " +
            to_text(cells * h);
   if (!config.species.empty() && !config.body_series)
-    return name + "bodies that come in need names; accepted: -body_series true";
+    return name + "bodies that enter must be labelled; accepted: -body_series true";
   side->feeder = static_cast<int>(cells);
   return {};
 }
@@ -189,7 +200,9 @@ std::string resolve_load(const OpeningSpec &spec, const std::string &name, Outle
   const auto &[first, capacity, second] = spec.windkessel;
   const bool holds = capacity > 0 && second > 0;
   if (!holds && spec.windkessel_start != 0)
-    return name + "_windkessel_start: there is no capacity that a resistance drains; accepted: 0, or with both in " +
+    return name +
+           "_windkessel_initial_pressure: the Windkessel has no capacitance with a parallel resistance; accepted: 0, "
+           "or both in " +
            name + "_windkessel";
   if (spec.resistance > 0 && spec.windkessel != Real3{})
     return name + "_resistance: given beside " + name + "_windkessel; accepted: one of them";
@@ -198,8 +211,6 @@ std::string resolve_load(const OpeningSpec &spec, const std::string &name, Outle
   if (capacity == 0) load->resistance += second;
   return {};
 }
-
-}  // namespace
 
 std::string resolve_openings(Config *config) {
   for (int d = 0; d < 3; ++d)
@@ -211,14 +222,15 @@ std::string resolve_openings(Config *config) {
       if (side.kind == SideKind::inflow)
         for (const auto resolve : {resolve_inflow, resolve_feeder})
           if (std::string wrong = resolve(*config, d, high, &side); !wrong.empty()) return wrong;
+      if (side.kind == SideKind::wall)
+        if (std::string wrong = resolve_wall(*config, d, high, &side); !wrong.empty()) return wrong;
       if (side.kind != SideKind::pressure) continue;
       const OpeningSpec &spec = config->openings[d][high];
-      side.given = {spec.value, 0, 0, {}};
-      const std::string name = "-pressure_" + side_name(d, high);
+      side.given = {0, 0, 0, {}};
+      const std::string name = "-boundary_" + side_name(d, high), option = name + "_pressure";
       if (std::string wrong = resolve_load(spec, name, &side.load); !wrong.empty()) return wrong;
-      if (!spec.table.empty())
-        if (std::string wrong = read_table(spec.table, &side.given); !wrong.empty()) return name + "_table: " + wrong;
-      if (std::string wrong = extend_table(spec, name, name + "_table", spec.table, config->time.end, &side.given);
+      if (std::string wrong = read_course(spec.pressure, &side.given); !wrong.empty()) return option + ": " + wrong;
+      if (std::string wrong = extend_table(spec, name, option, spec.pressure, config->time.end, &side.given);
           !wrong.empty())
         return wrong;
     }
@@ -410,7 +422,7 @@ PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const 
       for (std::size_t cell = 0; cell < profile.size(); ++cell) sum += profile[cell] *= open.open(cell);
       if (!(std::fabs(sum) > 0)) {
         *wrong = "-boundary_" + side_name(d, high) +
-                 ": inflow, but rigid bodies cover what would come in; accepted: a side that is open";
+                 ": rigid bodies cover all of this inflow boundary; accepted: a boundary that is partly open";
         PetscFunctionReturn(0);
       }
       // A flow rate is that of the whole side, a velocity the mean over its open part.

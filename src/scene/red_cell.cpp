@@ -9,8 +9,8 @@ namespace eulastic {
 
 const std::vector<std::pair<std::string, std::string>> &red_cell_preset() {
   static const std::vector<std::pair<std::string, std::string>> preset{
-      {"shape", "biconcave"}, {"membrane", "skalak"},        {"surface_shear_modulus", "0.0053"},
-      {"area_modulus", "20"}, {"bending_modulus", "0.0002"}, {"viscosity", "6"}};
+      {"shape", "biconcave"}, {"membrane_law", "skalak"},    {"surface_shear_modulus", "0.0053"},
+      {"skalak_c", "20"},     {"bending_modulus", "0.0002"}, {"viscosity", "6"}};
   return preset;
 }
 
@@ -45,13 +45,13 @@ std::vector<std::string> coarse_surfaces(const Config &config, bool of_membranes
     if (!(thickness > 0 && thickness < round_off * least * spacing)) continue;
     if (spec.is_membrane())
       warnings.push_back(
-          print("membranes of %s are %.3g apart where they are thinnest, %.2g cells: the grid does not tell both sides "
-                "from each other; a spacing of at most %.3g would do",
+          print("membranes of %s are %.3g apart where they are thinnest, %.2g cells: the grid does not resolve the "
+                "fluid between them; use a spacing of at most %.3g",
                 spec.name.c_str(), thickness, thickness / spacing, thickness / least));
     else
       warnings.push_back(
-          print("drops of %s are %.3g in radius where they are thinnest, %.2g cells: their surface is too coarse to "
-                "hold them together; a spacing of at most %.3g would do",
+          print("drops of %s are %.3g in radius where they are thinnest, %.2g cells: their surface is too coarse "
+                "to hold them together; use a spacing of at most %.3g",
                 spec.name.c_str(), 0.5 * thickness, 0.5 * thickness / spacing, thickness / least));
   }
   return warnings;

@@ -68,9 +68,9 @@ std::string check_path(const Config &config, const SpeciesSpec &spec, const Surf
   const double high = place.centre[d] + std::max(V * way.low, V * way.high) + extent;
   if (low >= margin && high <= length - margin) return {};
   const bool below = low < margin;
-  return "-" + spec.name + (V == 0 ? "_angular_velocity: turns" : "_velocity: carries") + " a body to " + "xyz"[d] +
+  return "-" + spec.name + (V == 0 ? "_angular_velocity: rotates" : "_velocity: carries") + " a body to " + "xyz"[d] +
          " = " + to_text(below ? low : high) + "; accepted: a path between " + to_text(margin) + " and " +
-         to_text(length - margin) + ", two cells from the sides";
+         to_text(length - margin) + ", two cells from the boundaries";
 }
 
 // What is between two bodies at a time; infinite of shapes of which it is not known here.
@@ -130,11 +130,12 @@ std::string check_paths(const Config &config) {
     const SpeciesSpec &spec = config.species[s];
     if (!spec.travels(dimension)) continue;
     const std::string option = "-" + spec.name + (spec.turns(dimension) ? "_angular_velocity" : "_velocity") +
-                               ": a body that travels through the grid, or turns there, ";
+                               ": a body that moves or rotates through the grid ";
     if (!config.method.staggered()) return option + "needs -method fast; accepted here: along itself, or 0,0,0";
     if (config.method.acm_of_the_paper())
-      return option + "needs an increment of the pressure; accepted here: -acm_sweeps_max > 1, or along itself";
-    if (has_feeders(config.sides)) return option + "does not go with a feeder; accepted: without -inflow_SIDE_feeder";
+      return option + "needs an increment of the pressure; accepted here: -acm_iterations_max > 1, or along itself";
+    if (has_feeders(config.sides))
+      return option + "cannot be combined with an inlet generator; accepted: without -boundary_SIDE_generator_length";
     if (spec.shape == Shape::voxels) continue;
     const Surface surface(spec, dimension);
     for (const BodyPlace &place : config.places[s].known)

@@ -19,9 +19,9 @@ void add_attachment_warnings(const Config &config, std::vector<std::string> *war
     const Material material = spec.material();
     if (!material.attached || damps_short_waves(spacing, dimension, config.fluid, material)) continue;
     warnings->push_back(
-        print("%s is attached and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
-              "viscosity %g, so that its strain at the surface is first order, as of a free body; a spacing of at "
-              "most %.3g would do",
+        print("%s is anchored and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
+              "viscosity %g, so that its strain at the surface is of first order only, as for a free body; use a "
+              "spacing of at most %.3g",
               spec.name.c_str(), viscosity_of(material, config.fluid) / config.fluid.density,
               damping_spacing(config.fluid, material)));
   }
@@ -37,8 +37,8 @@ void add_lag_warnings(const Config &config, std::vector<std::string> *warnings) 
     alone.add(spec.material(), 0);
     if (!alone.exists() || alone.settles()) continue;
     warnings->push_back(
-        print("%s is %.3g times as viscous as the fluid: beyond a factor of 20 the velocity is late by some %.0f "
-              "steps; shorter ones, -time_step, are late by less",
+        print("%s is %.3g times as viscous as the fluid: beyond a factor of 20 the velocity lags by about %.0f "
+              "steps; use a shorter -time_step",
               spec.name.c_str(), viscosity_of(spec.material(), config.fluid) / config.fluid.viscosity,
               4 * all.most / all.least));
   }
@@ -51,8 +51,8 @@ void add_merging_warnings(const Config &config, std::vector<std::string> *warnin
     const std::string needed = config.why_no_boxes(spec);
     if (needed.empty() || spec.contact || config.method.interface != InterfaceScheme::plic) continue;
     if (spec.law == Law::rigid || spec.material().attached || config.places[s].count < 2) continue;
-    warnings->push_back("bodies of " + spec.name + " merge where they meet: boxes of their own, in which they stay " +
-                        "separate, need " + needed + "; -" + spec.name + "_contact merge says that they may");
+    warnings->push_back("bodies of " + spec.name + " merge where they touch: to stay separate they need " + needed +
+                        "; -" + spec.name + "_contact merge accepts it without this warning");
   }
 }
 

@@ -26,8 +26,7 @@ bool flat(const Config &config) { return config.grid.cells[2] == 1; }
 std::string check_grid(const Config &config) {
   if (config.ranks > 0 && !config.check_only)
     return "-ranks: " + std::to_string(config.ranks) +
-           " without -check_only; accepted: 0, as mpiexec -n says how many "
-           "ranks a run has";
+           " without -check_only; accepted: auto, because mpiexec -n sets the ranks of a run";
   GridSpec serial = config.grid;
   serial.processors = {0, 0, 0};
   if (const std::string reason = Domain::why_not(serial, 1); !reason.empty()) return reason;
@@ -35,11 +34,11 @@ std::string check_grid(const Config &config) {
     const std::string name = std::string("-boundary_") + "xyz"[d];
     for (int high = 0; high < 2; ++high)
       if (!config.boundary.bounded(d) && config.boundary.side[d][high] != SideChoice::same)
-        return name + (high ? "max" : "min") + ": one side alone cannot be periodic; accepted: same, or with " + name +
-               (high ? "min" : "max") + " or " + name;
+        return name + (high ? "max" : "min") + ": a single boundary cannot be periodic; accepted: same, or with " +
+               name + (high ? "min" : "max") + " or " + name;
   }
   if (flat(config) && config.grid.boundary[2] == Boundary::wall)
-    return "-boundary_z: a side needs more than one cell in z; accepted in 2-D: periodic";
+    return "-boundary_z: a boundary needs more than one cell in z; accepted in 2-D: periodic";
   double cells = 1;
   for (int n : config.grid.cells) cells *= n;
   if (!config.check_only && cells > std::numeric_limits<PetscInt>::max())
@@ -69,7 +68,7 @@ std::string check_walls(const Config &config) {
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const Real3 &velocity = config.sides[d][side].motion.velocity;
-      const std::string name = "wall_" + side_name(d, side) + "_velocity";
+      const std::string name = "boundary_" + side_name(d, side) + "_velocity";
       if (velocity[d] != 0) return "-" + name + ": the " + "xyz"[d] + " component is normal to the wall and must be 0";
       if (const std::string wrong = check_vector(config, name, velocity); !wrong.empty()) return wrong;
     }
@@ -93,7 +92,7 @@ std::string check_flow(const Config &config) {
     if (config.grid.boundary[d] == Boundary::wall && initial.mean[d] != 0 &&
         !(crossed(config, d, 0) && crossed(config, d, 1)))
       return std::string("-initial_velocity_mean: the ") + "xyz"[d] +
-             " component must be 0 between sides of which one is closed";
+             " component must be 0 where a boundary of this direction is closed";
   const std::string &name = initial_velocity_names()[static_cast<int>(initial.kind)];
   const bool between_walls = initial.kind == InitialVelocity::couette || initial.kind == InitialVelocity::poiseuille;
   if (between_walls && !(config.boundary.is_wall(1, 0) && config.boundary.is_wall(1, 1)))
@@ -113,12 +112,12 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (is_attached(spec.shape) || spec.shape == Shape::cylinder || spec.attached.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
   if (!config.initial_state.empty() || spec.shape == Shape::state)
-    return law + "a shape to start from, and cannot be read from -initial_state";
+    return law + "an initial shape, which -initial_state does not give";
   if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
-    return "-" + spec.name + "_spontaneous_curvature: nothing bends back to it; accepted: 0, or -" + spec.name +
+    return "-" + spec.name + "_spontaneous_curvature: requires a bending modulus; accepted: 0, or -" + spec.name +
            "_bending_modulus > 0";
   if (spec.stretch_force.force > 0 && !config.body_series)
-    return "-" + spec.name + "_stretch_force: must know one body from the other; accepted: -body_series true, or 0";
+    return "-" + spec.name + "_stretch_force: requires labelled bodies; accepted: -body_series true, or 0";
   return {};
 }
 
@@ -143,25 +142,27 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   for (int d = 0; d < 3; ++d) {
     const bool about_axis = spec.shape == Shape::cylinder && d == spec.axis;
     if (motion.angular_velocity[d] != 0 && ((flat(config) && d != 2) || !(closed || about_axis)))
-      return no("angular_velocity",
-                "would turn the body out of the box; accepted: any axis of a sphere, ellipsoid, biconcave or voxels, "
-                "that of a cylinder, z alone in 2-D, else 0,0,0");
+      return no(
+          "angular_velocity",
+          "cannot rotate this body about this axis; accepted: any axis of a sphere, ellipsoid, biconcave or voxels, "
+          "that of a cylinder, z alone in 2-D, else 0,0,0");
     if (motion.velocity[d] == 0) continue;
     if (flat(config) && d == 2 && spec.shape != Shape::slab)
       return no("velocity", "the z component must be 0 in 2-D (one cell in z)");
     const bool fluid_around = closed || (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
     if (spec.shape == Shape::slab && d == spec.axis) {
       if (!piston_has_way_out(config, spec))
-        return no("velocity",
-                  "the slab would press fluid that has no way out; accepted: no other slab across its way, and a "
-                  "pressure or outflow side on both ends of it, or a periodic one; or such a side along all of it");
+        return no(
+            "velocity",
+            "the slab would compress fluid that cannot leave the box; accepted: no other slab across its way, and a "
+            "pressure, outflow or periodic boundary at both ends of it; or a pressure or outflow boundary along it");
     } else if (!spec.slides(d) && !fluid_around)
       return no("velocity",
                 "would carry the body through the grid, and fluid cannot pass around it; accepted: along the axis of "
                 "a tube, any of a slab, sphere, ellipsoid, biconcave, voxels or cylinder, else 0,0,0");
     if (spec.slides(d) && config.grid.boundary[d] == Boundary::wall)
       return no("velocity",
-                "the body would slide into the sides of the box; accepted: 0 along a direction that is not "
+                "the body would slide into the boundaries of the box; accepted: 0 along a direction that is not "
                 "periodic");
   }
   return {};
@@ -171,7 +172,7 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   if (spec.shape == Shape::state && config.initial_state.empty())
     return "-" + spec.name + "_shape: state needs -initial_state";
   if ((spec.shape == Shape::voxels || spec.shape == Shape::state) && spec.placement != Placement::one)
-    return "-" + spec.name + "_placement: has no meaning with -" + spec.name + "_shape " +
+    return "-" + spec.name + "_placement: does not apply with -" + spec.name + "_shape " +
            (spec.shape == Shape::state ? "state" : "voxels") + "; accepted: one";
   if (spec.shape == Shape::slab) {
     const auto [low, high] = spec.interval;
@@ -187,7 +188,7 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   for (const auto check : {check_membrane, check_rigid})
     if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
   if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().carries_tensor())
-    return "-" + spec.name + "_initial_stretch: without a modulus nothing remembers a stretch; accepted: 1,1,1, or -" +
+    return "-" + spec.name + "_initial_stretch: a body without a modulus has no stretch; accepted: 1,1,1, or -" +
            spec.name + "_shear_modulus > 0";
   if (spec.surface_tension > 0 && config.method.interface != InterfaceScheme::plic)
     return "-" + spec.name +
@@ -210,7 +211,7 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
     return "-" + spec.name + "_placement: random needs either -" + spec.name + "_count or -" + spec.name +
            "_hematocrit";
   if (random && (spec.shape == Shape::cylinder || is_attached(spec.shape)))
-    return "-" + spec.name + "_placement: random needs bodies with ends; accepted: sphere, biconcave, ellipsoid";
+    return "-" + spec.name + "_placement: random needs finite bodies; accepted: sphere, biconcave, ellipsoid";
   if (spec.placement == Placement::list && !is_file(spec.positions_file))
     return "-" + spec.name + "_positions: " + spec.positions_file + " is not a file";
   return {};
@@ -287,7 +288,7 @@ std::string check_samples(const Config &config) {
 
 std::string check_method(const Config &config) {
   if (config.method.pressure == PressureKind::smac && !SmacSolver::available())
-    return "-pressure_solver: smac needs FFTW, which this build has not; accepted: acm, ksp";
+    return "-pressure_solver: smac needs FFTW, which this build lacks; accepted: acm, ksp";
   return {};
 }
 
@@ -295,7 +296,7 @@ std::string check_time(const Config &config) {
   const double resolution = std::numeric_limits<double>::epsilon() / 2 * config.time.end;
   if (config.time.step == 0 || config.time.step > resolution) return {};
   return "-time_step: " + to_text(config.time.step) + " cannot be added to times near -time_end " +
-         to_text(config.time.end) + "; accepted: 0 or a number > " + to_text(resolution);
+         to_text(config.time.end) + "; accepted: auto, or a number > " + to_text(resolution);
 }
 
 std::string check_snapshots(const Config &config) {

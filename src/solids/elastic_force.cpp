@@ -9,12 +9,12 @@
 namespace eulastic {
 namespace {
 
-// Faces of the components from a_begin on, before a_end.
+// Faces of components a_begin <= a < a_end in rows of plane k.
 struct Rows {
   int i_begin, i_end, j_begin, j_end, k, a_begin, a_end;
 };
 
-// Asks for what the batches do not: beside the vectors of a segment two planes on, and phi up to its last cache line.
+// Prefetches data two planes ahead that the batches do not: the cache lines beside the vectors of a segment, and phi.
 void prefetch_beside(const Phase &phase, const Segment &s) {
   const ConstView phi = phase.fraction[0];
   const Field &B = phase.tensor.field;
@@ -40,7 +40,7 @@ EULASTIC_INLINE void add_force(const Box &box, const Phase &phase, const Law &la
   for (int f = 0; f < phase.tensor.field.count(); ++f) B[f] = phase.tensor.field[f].origin;
   const auto add = [&](kernels::Batch &batch) EULASTIC_BODY {
     for (int a = rows.a_begin; a < rows.a_end; ++a) {
-      if (Dim == 3) {  // two planes on
+      if (Dim == 3) {  // prefetch two planes ahead
         batch.ahead[0] = B[a] + 2 * phi.sz;
         batch.ahead[1] = B[kernels::position<Dim>(a, (a + 1) % Dim)] + 2 * phi.sz;
       }

@@ -13,12 +13,12 @@ namespace {
 
 constexpr unsigned char outside = 255;
 
-// The owned points of a field and `reach` layers of those around them.
-struct Reach {
+// The owned points of a field and `layers` of points around them.
+struct PointBlock {
   Int3 begin{}, end{};
-  Reach(const Box &box, const Staggering &at, int reach) {
+  PointBlock(const Box &box, const Staggering &at, int layers) {
     for (int d = 0; d < 3; ++d) {
-      const Box::Range near = box.points_near(d, at[d], reach);
+      const Box::Range near = box.points_near(d, at[d], layers);
       begin[d] = near.begin;
       end[d] = near.end;
     }
@@ -28,13 +28,14 @@ struct Reach {
   }
 };
 
-// Whether the way from mask[0] leads towards the body for two points beyond the neighbour.
+// Whether the layer number decreases for two points beyond the neighbour mask[step], i.e. the line leads into the body.
 bool leads_in(const unsigned char *mask, std::ptrdiff_t step) {
-  const auto inwards = [](unsigned char here, unsigned char next) { return next == 0 || next < here; };
+  const auto inwards = [](unsigned char layer, unsigned char next) { return next == 0 || next < layer; };
   return inwards(mask[step], mask[2 * step]) && inwards(mask[2 * step], mask[3 * step]);
 }
 
-// 0 where B evolves, `outside` elsewhere, on the first `n` points of a row; phi at their centres or low edges.
+// Flags the first `n` points of a row: 0 where B evolves, `outside` elsewhere. `phi` is at their centres, or at the
+// centres above their edges.
 template <bool Edge>
 EULASTIC_INLINE void flag_points(int n, const double *phi, const std::ptrdiff_t *step, double threshold,
                                  unsigned char *row) {
@@ -51,7 +52,7 @@ EULASTIC_CLONES void flag_row(int n, const double *phi, const std::ptrdiff_t *st
     flag_points<false>(n, phi, step, threshold, row);
 }
 
-// 1 at the points outside with a face neighbour in a layer below L, 0 elsewhere; whole vectors.
+// found = 1 at the points outside with a face neighbour in a layer below L, 0 elsewhere. Works on whole vectors.
 EULASTIC_CLONES void find_layer(int n, const unsigned char *row, std::ptrdiff_t sy, std::ptrdiff_t sz, unsigned char L,
                                 unsigned char *found) {
   const auto least = [](unsigned char a, unsigned char b) EULASTIC_BODY { return a < b ? a : b; };
@@ -63,7 +64,7 @@ EULASTIC_CLONES void find_layer(int n, const unsigned char *row, std::ptrdiff_t 
   }
 }
 
-// The first point from i on that is found, or n.
+// Index of the first found point at or after i, or n.
 int next_found(const unsigned char *found, int i, int n) {
   const void *at = std::memchr(found + i, 1, n - i);
   return at ? static_cast<int>(static_cast<const unsigned char *>(at) - found) : n;
@@ -79,8 +80,8 @@ bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimensio
   return true;
 }
 
-// What of a row in a box a body is near to: of owned rows that is known.
-OccupiedRows::Span near_part(const Phase &phase, const Reach &extent, int j, int k) {
+// The part of a row within `extent` that is close to a body. Owned rows without strained points have none.
+OccupiedRows::Span near_part(const Phase &phase, const PointBlock &extent, int j, int k) {
   const ActiveSegments &strained = phase.tensor.strained;
   if (j >= 0 && k >= 0 && j < strained.rows_y() && k < strained.rows_z()) {
     const ActiveSegments::Range range = strained.row(j, k);
@@ -90,9 +91,9 @@ OccupiedRows::Span near_part(const Phase &phase, const Reach &extent, int j, int
   return {std::max(span.begin, extent.begin[0]), std::min(span.end, extent.end[0])};
 }
 
-// 0 in `mask` where points at `at` evolve.
+// Sets `mask` to 0 at the points of staggering `at` that evolve.
 void flag_evolving(const Box &box, const Phase &phase, const Staggering &at, const std::ptrdiff_t *stride,
-                   const Reach &all, unsigned char *mask) {
+                   const PointBlock &all, unsigned char *mask) {
   const ConstView fraction = phase.fraction[0];
   const EvolveRule &rule = phase.tensor.rule;
   std::ptrdiff_t step[2] = {0, 0};
@@ -146,11 +147,11 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Mask *la
   layer_of->assign(layout.size + whole_vectors(1), outside);
   unsigned char *mask = layer_of->data();
   const std::ptrdiff_t stride[3] = {1, layout.sy, box.dimension() == 3 ? layout.sz : 0};
-  // Edges see one centre further down: four layers of them are as far as five layers of centres allow.
-  const Reach all(box, at, layers);
+  // An edge depends on one centre further down, so four layers of edges need five layers of centres.
+  const PointBlock all(box, at, layers);
   flag_evolving(box, phase, at, stride, all, mask);
-  const Reach owned(box, at, 0);
-  // A row is marked once the next one has been looked at, which would wait for the marks.
+  const PointBlock owned(box, at, 0);
+  // The marks of a row are written one row later, so that find_layer() of the next row need not wait for these stores.
   struct Row {
     int begin, n = 0, j, k;
     unsigned char *mask;
@@ -162,17 +163,17 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Mask *la
     entries.clear();
     const auto mark = [&](Row &row) {
       for (int i = next_found(row.found.data(), 0, row.n); i < row.n; i = next_found(row.found.data(), i + 1, row.n)) {
-        unsigned char *here = row.mask + i;
-        *here = static_cast<unsigned char>(L);
+        unsigned char *point_mask = row.mask + i;
+        *point_mask = static_cast<unsigned char>(L);
         if (linear_ && !owned.contains({row.begin + i, row.j, row.k})) continue;
-        const auto counts = [=](std::ptrdiff_t step) { return here[step] < L; };
-        const auto has_line = [=](std::ptrdiff_t step) { return here[step] < L && leads_in(here, step); };
-        entries.emplace_back(here - mask, neighbour_bits(box.dimension(), stride, counts),
+        const auto counts = [=](std::ptrdiff_t step) { return point_mask[step] < L; };
+        const auto has_line = [=](std::ptrdiff_t step) { return point_mask[step] < L && leads_in(point_mask, step); };
+        entries.emplace_back(point_mask - mask, neighbour_bits(box.dimension(), stride, counts),
                              linear_ ? neighbour_bits(box.dimension(), stride, has_line) : 0);
       }
       row.n = 0;
     };
-    const Reach extent(box, at, layers - L);
+    const PointBlock extent(box, at, layers - L);
     int turn = 0;
     for (int k = extent.begin[2]; k < extent.end[2]; ++k)
       for (int j = extent.begin[1]; j < extent.end[1]; ++j) {
@@ -187,18 +188,18 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Mask *la
         find_layer(whole_vectors(row.n), row.mask, stride[1], stride[2], static_cast<unsigned char>(L),
                    row.found.data());
         turn = 1 - turn;
-        mark(rows[turn]);  // the one before
+        mark(rows[turn]);  // the previous row
       }
     mark(rows[1 - turn]);
   }
 }
 
-// Part `part` of what a layer holds. Returns the flops.
+// Extends B to piece `part` of the points of a layer. Returns the flops.
 double ExteriorLayers::extend_part(const Box &box, int layer, int part, int parts, double *B) const {
   const std::ptrdiff_t stride[3] = {1, box.layout().sy, box.layout().sz}, size = box.layout().size;
   const int dimension = box.dimension();
   double flops = 0;
-  for (const Location &location : locations_) {  // the diagonals, which share their points, then the others
+  for (const Location &location : locations_) {  // the diagonals, which share their points, then the off-diagonals
     const std::vector<LayerPoint> &points = location.layer[layer - 1];
     const Piece piece(points.size(), part, parts);
     const int fields = &location == &locations_[0] ? dimension : 1;
@@ -217,8 +218,8 @@ PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, Gho
   std::vector<double> flops(parts);
   for (int L = 1; L <= layers; ++L) {
     in_parallel(parts, parts, [&](int part) { flops[part] = extend_part(box, L, part, parts, tensor.data()); });
-    for (const double some : flops) scope.flops(some);
-    clear_symmetry_planes(box, sides, tensor);  // as the mean with their mirror images
+    for (const double part_flops : flops) scope.flops(part_flops);
+    clear_symmetry_planes(box, sides, tensor);  // the mean of a component and its mirror image is 0
     if (linear_ && exchange && L < layers) PetscCall(exchange->update_ghosts(tensor, 3));
   }
   PetscFunctionReturn(0);

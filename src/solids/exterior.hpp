@@ -1,9 +1,9 @@
-// B outside the body: constant extrapolation over four layers, I beyond, so that WENO5 never sees a jump to I.
+// Extrapolation of B to four layers of points outside a body; B = I beyond, so that WENO5 never reads a jump to I.
 //
-// B evolves where phi > 1/2 (on edges: where the mean of the four centres is). Layer L holds the other points with a
-// face neighbour in layer L - 1 and takes the mean of its neighbours in the layers before. Synchronous: only lower
-// layers are read. Ghosts are extended along with the owned points: B needs four valid ghost layers where it
-// evolves, and afterwards an exchange of three.
+// B evolves where phi > 1/2 (on edges: the mean phi of four centres). Layer L contains the remaining points with a face
+// neighbour in layer L - 1, and takes the mean of its neighbours in lower layers. Only lower layers are read, so the
+// order of points does not matter. Ghosts are extended together with owned points: B needs four valid ghost layers
+// where it evolves; afterwards three must be exchanged.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -16,31 +16,31 @@
 
 namespace eulastic {
 
-/// B evolves where at least half of the point is solid; a little more on edges, so that round-off in a mean of full
-/// and empty centres does not decide.
+/// B evolves where at least half of a point is solid. The margin on edges keeps round-off in the mean of full and empty
+/// centres from deciding.
 inline constexpr EvolveRule evolve_above_half{0.5, 0.5 + 1e-6, 1e-30, 4};
-/// Attached bodies: only where all is solid. With linear extension, of the smaller of two slopes, that is second order
-/// wherever the surface lies.
+/// Anchored bodies: B evolves only where all is solid. With linear extrapolation, limited by minmod, this is of second
+/// order wherever the surface is located.
 inline constexpr EvolveRule evolve_where_full{0.99, 0.99, 1e-30, 4, 2, true};
 
-/// Whether the body's viscosity damps elastic waves as short as a cell, sqrt(G/rho) h <= nu: linear extension of an
-/// attached body amplifies those that it does not.
+/// Whether the body's viscosity damps elastic waves as short as a cell, sqrt(G/rho) h <= nu. Linear extrapolation at an
+/// anchored body amplifies such waves where it does not.
 bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, const Material &material);
-/// The largest spacing at which it does; infinite without elasticity.
+/// The largest spacing at which damps_short_waves() holds; infinite without elasticity.
 double damping_spacing(const Fluid &fluid, const Material &material);
 
-/// Which points each layer holds; made anew whenever phi has changed.
+/// The points of each layer; to be rebuilt whenever phi has changed.
 class ExteriorLayers {
 public:
   static constexpr int layers = evolve_above_half.layers;
 
-  /// phi of the phase needs five valid ghost layers; find_solid() has run.
+  /// Finds the layers around the bodies of the phase. phi needs five valid ghost layers; find_solid() must have run.
   PetscErrorCode build(const Box &box, const Phase &phase);
-  /// Extends all components of B. Points outside every layer are left alone (they hold I). Linear extension sees
-  /// three points in, so that attached bodies exchange ghosts after every layer; `exchange` is null for boxes that are
-  /// whole on this rank.
+  /// Extrapolates all components of B to the layers. Other points outside keep their value, I. Linear extrapolation
+  /// reads three points inwards, so that for anchored bodies ghosts are exchanged after every layer; `exchange` is null
+  /// for boxes that are complete on this rank.
   PetscErrorCode extend(const Box &box, const BoxSides &sides, GhostExchange *exchange, Field &tensor) const;
-  /// Points in the layers of all locations.
+  /// Number of points in the layers of all locations.
   double points() const noexcept;
 
 private:
@@ -53,8 +53,8 @@ private:
   double extend_part(const Box &box, int layer, int part, int parts, double *B) const;
 
   bool linear_ = false;
-  std::vector<Location> locations_;  ///< centres first, then one per off-diagonal component
-  std::vector<Mask> masks_;          ///< of every location, without threads of one at a time
+  std::vector<Location> locations_;  ///< centres first, then one for each off-diagonal component
+  std::vector<Mask> masks_;          ///< layer of every point, for each location with threads, else for one at a time
 };
 
 }  // namespace eulastic

@@ -12,8 +12,8 @@
 namespace eulastic {
 namespace {
 
-// Rows of a phase and, if its fields are swapped, of what they are swapped with, which may be those of another phase:
-// ghosts need an exchange, and those behind walls values, if they did in either.
+// Rows whose ghosts must be updated after the transport of a phase: its own rows and, if its fields were swapped, those
+// of the fields it received, which may have belonged to another phase.
 struct MovedRows {
   bool swaps = false;
   OccupiedRows swapped_in, joined;
@@ -23,7 +23,7 @@ struct MovedRows {
   }
 };
 
-// Rigid bodies stay where they are, and others may lie in boxes of their own.
+// Rigid bodies do not move on the grid, and other bodies may be in boxes of their own.
 bool moves_on_grid(const Phase &phase) { return !phase.material.is_rigid() && !phase.boxed; }
 
 }  // namespace
@@ -36,12 +36,13 @@ EvolveRule evolve_rule(const Flow &flow, const Material &material) {
   const bool linear =
       material.attached && damps_short_waves(domain.spacing(), domain.dimension(), flow.fluid, material);
   EvolveRule rule = reset ? reset_below_one_per_cent : linear ? evolve_where_full : evolve_above_half;
-  // The stress is that of the step's start, and centres where B is I have none: not so where B.B sees their edges.
+  // The stress is that of the start of the step, and vanishes at centres where B is I, unless the law reads B of the
+  // edges around.
   const bool edges = with_law(material, [](const auto &law) { return law.couples_edges; });
   if (!flow.staggered() && !edges) rule.reach = 1;
   if (!reset && flow.spec.interface == InterfaceScheme::weno5)
-    rule.stressed = EvolveRule::everywhere;  // smeared everywhere, and below 0
-  // In cut cells B of a free body follows the velocity of the mixture, and is not that of the solid alone.
+    rule.stressed = EvolveRule::everywhere;  // phi is smeared over the grid, with negative values
+  // In cut cells B of a free body follows the velocity of the mixture, so it is not that of the solid alone.
   const bool alone = linear || material.viscosity < flow.fluid.viscosity;
   if (!reset && material.viscosity > 0 && alone) rule.viscosity_excess = material.viscosity / flow.fluid.viscosity - 1;
   return rule;
@@ -85,7 +86,7 @@ PetscErrorCode GridBodies::start() {
     phase.tensor.rule = evolve_rule(flow_, phase.material);
     PetscCall(flow_.settle(&phase));
   }
-  next_rows_ = phases[0].rows;  // more than those of the blocks, which are at rest
+  next_rows_ = phases[0].rows;  // an upper bound: the blocks themselves hold their default
   stale_.build(domain, phases[0].fraction[0], phases[0].rows, HUGE_VAL, 0, 0);
   PetscFunctionReturn(0);
 }
@@ -128,7 +129,7 @@ PetscErrorCode GridBodies::forget_unresolved(const std::vector<double> &trace) {
   PetscFunctionReturn(0);
 }
 
-// (4) of all phases, then (5) of the elastic ones.
+// Advances (4) of all phases, then (5) of the elastic ones.
 PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
   std::vector<Phase> &phases = *moved_phases;
   const Domain &domain = flow_.domain;
@@ -156,7 +157,7 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
       PetscCall(advect_fraction(domain, dt, velocity, phase, rows[p].swapped_in, flow_.next_fraction));
       phase.fraction.swap(flow_.next_fraction);
     }
-    rows[p].join(phase.rows);  // it has moved less than a cell
+    rows[p].join(phase.rows);  // the body has moved by less than a cell
   }
   std::vector<OccupiedRows::Moved> moved;
   std::vector<WantedGhosts> fractions, tensors;
@@ -166,7 +167,7 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
       moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0]});
     }
   PetscCall(flow_.exchange.update_ghosts(fractions));
-  PetscCall(OccupiedRows::follow(domain, moved));  // sees what has come into ghosts, even of idle rows
+  PetscCall(OccupiedRows::follow(domain, moved));  // also finds what has entered the ghosts of idle rows
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
     if (!moves_on_grid(phase)) continue;
@@ -175,7 +176,7 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
     if (!phase.material.carries_tensor()) continue;
     const ActiveSegments before = std::move(phase.tensor.strained);
     PetscCall(find_solid(domain, phase));
-    if (phase.material.is_membrane()) continue;  // with the others of its kind
+    if (phase.material.is_membrane()) continue;  // MembraneTransport moves its tensor
     PetscCall(solids_.find_layers(domain, phase));
     PetscCall(transport_left_cauchy_green(phase, before, dt, &rows[p].joined));
     tensors.push_back({&phase.tensor.field, Box::stencil_width, &rows[p].joined});
@@ -185,8 +186,9 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
   PetscFunctionReturn(0);
 }
 
-// Staggered: Heun with the velocity of the middle. Euler: B follows the new velocity, else dt <= mu/G. `before` is
-// where the B of the phase differed from I; what lies outside it stays I untouched. Leaves the ghosts to the caller.
+// Advances B: with the fast method by Heun with the velocity of the middle of the step; with plain Euler by the new
+// velocity, because the old one would require dt <= mu/G. `before`: where B of the phase differed from I; points
+// outside it keep I. Does not update ghosts.
 PetscErrorCode GridBodies::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                                        const OccupiedRows *rows) {
   const PhasePlace place = flow_.place_of_phases();

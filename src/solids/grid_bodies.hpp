@@ -1,5 +1,5 @@
-// Bodies that lie on the grid of all ranks: phi of all their species, and B of the elastic ones. All phases together,
-// so that their ghosts come together.
+// Bodies on the grid of all ranks: phi of all their species, and B of the elastic ones. All phases are moved together,
+// so that their ghosts are exchanged together.
 #pragma once
 
 #include "grid/active_segments.hpp"
@@ -10,13 +10,13 @@
 
 namespace eulastic {
 
-/// Where B of a material lives and evolves.
+/// The rule by which B of a material evolves and is extrapolated.
 EvolveRule evolve_rule(const Flow &flow, const Material &material);
 
 class GridBodies final : public FlowPart {
 public:
   explicit GridBodies(Flow *flow) : flow_(*flow), solids_(flow->spec.exterior == SolidExterior::extrapolate) {}
-  /// Fields of the work space that transport needs.
+  /// Number of work-space fields that the transport needs.
   static int work_fields(const Method &method, int dimension);
   std::size_t bytes() const override;
   PetscErrorCode carry(CarriedState *state) override;
@@ -24,7 +24,7 @@ public:
   PetscErrorCode resume() override;
   PetscErrorCode settle(Phase *phase) override;
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
-  /// Mends or forgets B where the grid does not resolve it. `trace`: the largest tr B of every phase. Collective.
+  /// Repairs B where the grid does not resolve it. `trace`: the largest tr B of every phase. Collective.
   PetscErrorCode forget_unresolved(const std::vector<double> &trace);
 
 private:
@@ -34,7 +34,7 @@ private:
   Flow &flow_;
   SolidTransport solids_;
   InterfaceTransport interface_;
-  OccupiedRows next_rows_;  ///< of the phase that Flow::next_fraction and next_tensor were swapped out of
+  OccupiedRows next_rows_;  ///< of the phase that last gave its fields to Flow::next_fraction and next_tensor
   ActiveSegments stale_;    ///< plain Euler: where Flow::next_tensor may differ from I
 };
 

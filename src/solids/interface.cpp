@@ -22,8 +22,8 @@ struct Extent {
   }
 };
 
-// One direction of one transport; the strides begin with its own.
-struct Sweep {
+// Transport along one direction. The strides begin with this direction.
+struct DirectionalSplit {
   int direction;
   Extent cells;
   double rate;  // dt/h
@@ -32,7 +32,7 @@ struct Sweep {
   View phi, flux, solid;
 };
 
-// The pieces of the active segments in a box.
+// The parts of active segments within a block.
 std::vector<Segment> inside(const ActiveSegments &active, const Extent &extent) {
   std::vector<Segment> pieces;
   for (int k = extent.begin[2]; k < extent.end[2]; ++k)
@@ -44,14 +44,15 @@ std::vector<Segment> inside(const ActiveSegments &active, const Extent &extent) 
   return pieces;
 }
 
-EULASTIC_CLONES void uniform_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
+EULASTIC_CLONES void uniform_fluxes(const DirectionalSplit &t, const Segment *begin, const Segment *end) {
   for (const Segment *s = begin; s < end; ++s)
     kernels::uniform_flux(*s, t.phi, t.velocity, t.stride[0], t.rate, t.flux.row(s->j, s->k));
 }
 
-// Lists the mixed cells of segments and finds their fluxes. Of those beside the box only the flux into it counts.
+// Lists the mixed cells of segments and computes their fluxes. Of cells beside the block only the flux into it is
+// needed.
 template <int Dim>
-EULASTIC_INLINE long mixed_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
+EULASTIC_INLINE long mixed_fluxes(const DirectionalSplit &t, const Segment *begin, const Segment *end) {
   kernels::MixedCells mixed;
   long planes = 0;
   const auto work = [&] {
@@ -74,19 +75,20 @@ EULASTIC_INLINE long mixed_fluxes(const Sweep &t, const Segment *begin, const Se
   return planes;
 }
 
-EULASTIC_CLONES long mixed_fluxes_2d(const Sweep &t, const Segment *begin, const Segment *end) {
+EULASTIC_CLONES long mixed_fluxes_2d(const DirectionalSplit &t, const Segment *begin, const Segment *end) {
   return mixed_fluxes<2>(t, begin, end);
 }
-EULASTIC_CLONES long mixed_fluxes_3d(const Sweep &t, const Segment *begin, const Segment *end) {
+EULASTIC_CLONES long mixed_fluxes_3d(const DirectionalSplit &t, const Segment *begin, const Segment *end) {
   return mixed_fluxes<3>(t, begin, end);
 }
-EULASTIC_CLONES void apply_fluxes(const Sweep &t, const Segment *begin, const Segment *end) {
+EULASTIC_CLONES void apply_fluxes(const DirectionalSplit &t, const Segment *begin, const Segment *end) {
   for (const Segment *s = begin; s < end; ++s)
     kernels::apply_flux(*s, t.flux, t.velocity, t.solid, t.stride[0], t.rate, t.phi.row(s->j, s->k));
 }
 
-// Returns how many planes were made.
-long sweep_band(const Box &box, const Sweep &t, const ActiveSegments &cells, const ActiveSegments &faces) {
+// Advances phi along one direction. Returns the number of planes constructed.
+long advance_direction(const Box &box, const DirectionalSplit &t, const ActiveSegments &cells,
+                       const ActiveSegments &faces) {
   const auto pass = [&](const ActiveSegments &active, const Extent &extent, auto kernel) {
     in_parts_of(inside(active, extent), box, kernel);
   };
@@ -100,17 +102,18 @@ long sweep_band(const Box &box, const Sweep &t, const ActiveSegments &cells, con
   return planes;
 }
 
-// Directions of a step: every one is first, in the middle and last equally often, and each order is followed by the
-// opposite one.
+// Order of the directions in a step: each direction is first, second and last equally often, and each order is followed
+// by its reverse.
 Int3 order_of_directions(int dimension, long step) {
   static constexpr Int3 orders[6] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {0, 2, 1}, {2, 0, 1}, {1, 0, 2}};
   if (dimension == 3) return orders[step % 6];
   return step % 2 == 0 ? Int3{0, 1, 2} : Int3{1, 0, 2};
 }
 
-// The cells each sweep has to move so that the later ones find their neighbours: a sweep along d reads two more
-// layers in d and one more in the others. Behind walls only the first layer matters, and that is reflected anew.
-std::array<Extent, 3> cells_of_sweeps(const Box &box, const Int3 &order) {
+// The cells each directional step must advance so that the later ones find their neighbours: a step along d reads two
+// more layers in d and one more in the other directions. Behind boundaries only the first layer matters, and it is
+// reflected again.
+std::array<Extent, 3> cells_of_directions(const Box &box, const Int3 &order) {
   std::array<Extent, 3> boxes{};
   Int3 layers{};
   for (int s = box.dimension() - 1; s >= 0; --s) {
@@ -131,7 +134,7 @@ PetscErrorCode InterfaceTransport::advance(const Box &box, double dt, const Fiel
   VerbScope scope(Verb::solid_fraction);
   const int dimension = box.dimension();
   const Int3 order = order_of_directions(dimension, step);
-  const std::array<Extent, 3> cells = cells_of_sweeps(box, order);
+  const std::array<Extent, 3> cells = cells_of_directions(box, order);
   const View phi = fraction[0], flux = work[0], solid = work[1];
   fill_wall_ghosts_even(box, at_centre, phi, 1, &rows);
   cells_.build_band(box, phi, rows, dimension);
@@ -143,9 +146,9 @@ PetscErrorCode InterfaceTransport::advance(const Box &box, double dt, const Fiel
   planes_ = 0;
   for (int s = 0; s < dimension; ++s) {
     const int d = order[s], e = (d + 1) % dimension, f = dimension == 3 ? (d + 2) % 3 : e;
-    Sweep sweep{d, cells[s], dt / box.spacing()[d], {}, velocity[d], phi, flux, solid};
-    for (int r = 0; r < 3; ++r) sweep.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
-    planes_ += static_cast<double>(sweep_band(box, sweep, cells_, faces_));
+    DirectionalSplit split{d, cells[s], dt / box.spacing()[d], {}, velocity[d], phi, flux, solid};
+    for (int r = 0; r < 3; ++r) split.stride[r] = phi.stride(r == 0 ? d : r == 1 ? e : f);
+    planes_ += static_cast<double>(advance_direction(box, split, cells_, faces_));
     fill_wall_ghosts_even(box, at_centre, phi, 1, &rows);
   }
   scope.flops(dimension *

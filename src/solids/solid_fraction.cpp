@@ -1,4 +1,4 @@
-// The solid fraction by WENO5, and where solid is.
+// Transport of the solid fraction by WENO5, and the segments of solid points.
 #include "base/events.hpp"
 #include "field/advection.hpp"
 #include "grid/blocks.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double epsilon = 1e-6;  // WENO5: phi is of order 1
 
-struct Move {
+struct AdvectionTerms {
   const Box *box;
   double dt;
   const Field *velocity;
@@ -23,8 +23,8 @@ struct Move {
 };
 
 template <int Dim>
-EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
-                                 Field &out, RowScratch &scratch) {
+EULASTIC_INLINE void advect_rows(const AdvectionTerms &t, const RowPart &part, const Phase &phase,
+                                 const OccupiedRows &next_rows, Field &out, RowScratch &scratch) {
   const Int3 n = t.box->cells();
   const ConstView phi = phase.fraction[0];
   const double dt = t.dt;
@@ -54,12 +54,12 @@ EULASTIC_INLINE void advect_rows(const Move &t, const RowPart &part, const Phase
   });
 }
 
-EULASTIC_CLONES void advect_2d(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
-                               Field &out, RowScratch &s) {
+EULASTIC_CLONES void advect_2d(const AdvectionTerms &t, const RowPart &part, const Phase &phase,
+                               const OccupiedRows &next_rows, Field &out, RowScratch &s) {
   advect_rows<2>(t, part, phase, next_rows, out, s);
 }
-EULASTIC_CLONES void advect_3d(const Move &t, const RowPart &part, const Phase &phase, const OccupiedRows &next_rows,
-                               Field &out, RowScratch &s) {
+EULASTIC_CLONES void advect_3d(const AdvectionTerms &t, const RowPart &part, const Phase &phase,
+                               const OccupiedRows &next_rows, Field &out, RowScratch &s) {
   advect_rows<3>(t, part, phase, next_rows, out, s);
 }
 
@@ -70,7 +70,7 @@ PetscErrorCode advect_fraction(const Box &box, double dt, const Field &velocity,
   PetscFunctionBeginUser;
   VerbScope scope(Verb::solid_fraction);
   const Real3 &h = box.spacing();
-  const Move terms{&box, dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}};
+  const AdvectionTerms terms{&box, dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}};
   in_row_parts(box, [&](const RowPart &part) {
     RowScratch scratch(box, 1);
     (box.dimension() == 2 ? advect_2d : advect_3d)(terms, part, phase, next_rows, next, scratch);

@@ -25,7 +25,7 @@ EULASTIC_CLONES void limit_row(const Edges &e, const Segment &s) {
     const double square = kernels::average4(aa + i, -e.a, -e.b) * kernels::average4(bb + i, -e.a, -e.b);
     const double most = __builtin_sqrt(square > 0 ? square : 0.0);
     const double limited = ab[i] > most ? most : ab[i] < -most ? -most : ab[i];
-    const bool finite = __builtin_fabs(ab[i]) <= std::numeric_limits<double>::max();  // what is not must show
+    const bool finite = __builtin_fabs(ab[i]) <= std::numeric_limits<double>::max();  // keep non-finite values visible
     ab[i] = kernels::average4(phi + i, -e.a, -e.b) < e.threshold || !finite ? ab[i] : limited;
   }
 }
@@ -63,13 +63,13 @@ PetscErrorCode SolidTransport::extend(const PhasePlace &place, const Phase &phas
   if (!extends_) PetscFunctionReturn(0);
   if (place.exchange) PetscCall(place.exchange->update_ghosts(tensor, ExteriorLayers::layers, rows));
   PetscCall(layers_.extend(*place.box, *place.sides, place.exchange, tensor));
-  fill_wall_ghosts_tensor(*place.box, *place.sides, tensor, 1, rows);  // limit_shear() reads it
+  fill_wall_ghosts_tensor(*place.box, *place.sides, tensor, 1, rows);  // read by limit_shear()
   PetscCall(limit_shear(*place.box, phase, tensor));
   PetscFunctionReturn(0);
 }
 
-// Where B is extended the second stage reads the first one no further than it has been extended, and the rest of
-// `stage` may hold anything; else I is read around the body.
+// Where B is extrapolated, the second stage reads the first one only within the extrapolated layers, so that the rest
+// of `stage` may have any values. Otherwise the second stage reads I around the body.
 PetscErrorCode SolidTransport::advance(const PhasePlace &place, const Step &step, const OccupiedRows *rows,
                                        Phase &phase, Field &stage) {
   PetscFunctionBeginUser;
@@ -79,7 +79,8 @@ PetscErrorCode SolidTransport::advance(const PhasePlace &place, const Step &step
   PetscCall(extend(place, phase, stage, rows));
   PetscCall(place.update_ghosts(stage, Box::stencil_width, rows));
   PetscCall(transport_tensor(box, {step.dt, true, &step.before}, step.velocity, phase, stage, phase.tensor.field));
-  // Over two steps at once, as its rates are slow against a step. It forgets strain: not on the way back in time.
+  // The corrections are slow compared to a step, so they are applied every second step with 2 dt. They dissipate
+  // strain, so they are never run backward in time.
   if (extends_ && !phase.tensor.rule.linear && step.number % 2 == 1 && step.dt > 0) {
     PetscCall(place.update_ghosts(phase.tensor.field, SurfaceCorrection::ghosts, rows));
     PetscCall(surface_.apply(box, {2 * step.dt, step.fluid, *place.sides}, step.velocity, phase, stage));

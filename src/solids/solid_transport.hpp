@@ -1,5 +1,5 @@
-// B of one phase from one time to another, (5), by Heun's method, with what its surface needs: docs/method.md, section
-// 7. The phase may lie on the grid of all ranks or in a box that is whole on this one.
+// Transport of B of one phase, (5), by Heun's method, with extrapolation and corrections at the surface:
+// docs/method.md, section 7. The phase may be on the grid of all ranks or in a box that is complete on this rank.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -12,30 +12,30 @@
 
 namespace eulastic {
 
-/// B_ab^2 <= B_aa B_bb on the edges that evolve, with the means of the diagonal over the four centres around them. The
-/// diagonal itself is kept above 0 by transport_tensor(). Needs B at the centres in one ghost layer, where an edge
-/// beside them evolves; phi in one.
+/// Enforces B_ab^2 <= B_aa B_bb on evolving edges, with the means of the diagonals over the four centres around;
+/// transport_tensor() keeps the diagonals themselves >= 0. Reads B at centres in one ghost layer, where an edge beside
+/// them evolves, and one ghost of phi.
 PetscErrorCode limit_shear(const Box &box, const Phase &phase, Field &tensor);
 
 class SolidTransport {
 public:
-  /// `extends`: B is extended outside bodies; else it is I there.
+  /// `extends`: B is extrapolated outside bodies; else it is I there.
   explicit SolidTransport(bool extends = false) : extends_(extends) {}
 
-  /// Finds where B is extended to. phi has five valid layers of ghosts; find_solid() has run.
+  /// Finds the layers to which B is extrapolated. phi needs five valid ghost layers; find_solid() must have run.
   PetscErrorCode find_layers(const Box &box, const Phase &phase);
-  /// Extends B of the phase outside the body, or its first stage. Ghosts are stale afterwards.
+  /// Extrapolates B of the phase, or its first stage, outside the body. Ghosts are invalid afterwards.
   PetscErrorCode extend(const PhasePlace &place, const Phase &phase, Field &tensor, const OccupiedRows *rows);
 
   struct Step {
     double dt;
-    std::int64_t number;  ///< every second step corrects B at the surface
+    std::int64_t number;  ///< B is corrected at the surface in every second step
     const Fluid &fluid;
-    const Field &velocity;         ///< of the middle of the step, three layers of ghosts
+    const Field &velocity;         ///< at the middle of the step, three ghost layers
     const ActiveSegments &before;  ///< where B differed from I before find_solid()
   };
-  /// Moves B of the phase over dt. `stage`: as many components, of any values. After find_layers(); ghosts of B are
-  /// stale afterwards.
+  /// Advances B of the phase over dt. `stage`: work space with as many components. Requires find_layers(); ghosts of B
+  /// are invalid afterwards.
   PetscErrorCode advance(const PhasePlace &place, const Step &step, const OccupiedRows *rows, Phase &phase,
                          Field &stage);
 

@@ -14,7 +14,7 @@ EULASTIC_CLONES void add_row(const Segment &row, double half, const double *phi,
   for (int i = row.i_begin; i < row.i_end; ++i) out[i] = kernels::fma(half, phi[i] + phi[i - below], out[i]);
 }
 
-// visit(phase, f, component) where there is any force.
+// Calls visit(phase, f, component) for every nonzero component of a body force.
 template <class Visit>
 void for_forces(const Box &box, const std::vector<Phase> &phases, double time, const Visit &visit) {
   for (const Phase &phase : phases) {
@@ -48,14 +48,14 @@ PetscErrorCode SpeciesForces::add_rate(const MomentumRate &rate) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SpeciesForces::add_power(const FlowLook &look, double *power) {
+PetscErrorCode SpeciesForces::add_power(const FlowLook &bodies, double *power) {
   const Domain &domain = flow_.domain;
   const Field &velocity = flow_.now.velocity;
   double total = 0;
   PetscFunctionBeginUser;
   const auto add = [&](const RowPart &part, ExactSums &sum) {
     std::vector<double> values(domain.cells()[0]);
-    for_forces(domain, look.phases, flow_.now.time, [&](const Phase &phase, double force, int a) {
+    for_forces(domain, bodies.phases, flow_.now.time, [&](const Phase &phase, double force, int a) {
       const std::ptrdiff_t below = phase.fraction[0].stride(a);
       for (const Segment &row : part.rows(domain)) {
         if (phase.rows.idle(row.j, row.k)) continue;

@@ -1,5 +1,5 @@
-// A force per mass on the bodies of a species alone: phi f, phi averaged to faces. Bodies keep the density of the fluid
-// as far as inertia goes: settling, a centrifuge, a magnetic pull.
+// A force per mass on the bodies of one species: phi f, with phi averaged to faces. It models sedimentation,
+// centrifuges or magnets. The inertia of the bodies remains that of the fluid's density.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -12,10 +12,10 @@ namespace eulastic {
 class SpeciesForces final : public FlowPart {
 public:
   explicit SpeciesForces(Flow *flow) : flow_(*flow) {}
-  /// Whether any phase has one.
+  /// Whether any phase has a body force.
   static bool exist(const std::vector<Phase> &phases);
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  PetscErrorCode add_power(const FlowLook &look, double *power) override;
+  PetscErrorCode add_power(const FlowLook &bodies, double *power) override;
 
 private:
   Flow &flow_;

@@ -13,14 +13,16 @@
 namespace eulastic {
 namespace {
 
-constexpr double forgetting = 3;            // per unit of strain, where viscosity damps short waves
-constexpr double least_determinant = 0.75;  // F does not go below
+constexpr double relaxation_per_strain = 3;  // (23), where viscosity damps short waves
+constexpr double least_determinant = 0.75;   // below it, (23) is skipped
 
-// What the points of a chunk read: fields of the phase and what is measured at centres, and how strong K and F are.
+// Input of a chunk of points: fields of the phase, measures at centres, and the coefficients of (21) and (23).
 struct Terms {
   std::ptrdiff_t stride[3];
   const double *B[6], *phi, *gradient[3], *rate;
-  double G, stiffening, mu, more, wave, kink, fading;  // 1/k = (mu + more (1 - phi))/G + wave/sqrt(G)
+  double G, stiffening;
+  double mu, excess_viscosity, wave_term;  // 1/k = (mu + excess_viscosity (1 - phi))/G + wave_term/sqrt(G)
+  double traction_factor, relaxation;      // dt times the factors of k in (22) and of a in (23)
 
   Terms(const Box &box, const SurfaceStep &step, const Phase &phase, const Field &measured) {
     const int dimension = box.dimension();
@@ -40,60 +42,62 @@ struct Terms {
       stiffening = law.stiffening();
     });
     mu = step.fluid.viscosity;
-    more = phase.tensor.rule.viscosity_excess * mu;
-    wave = 0.0625 * shortest * std::sqrt(rho);
-    kink = step.dt * (mu > across ? across / mu : 1);
-    fading = forgetting * step.dt * (mu < across ? mu / across : mu > 0 ? 1 : 0);
+    excess_viscosity = phase.tensor.rule.viscosity_excess * mu;
+    wave_term = 0.0625 * shortest * std::sqrt(rho);
+    traction_factor = step.dt * (mu > across ? across / mu : 1);
+    relaxation = relaxation_per_strain * step.dt * (mu < across ? mu / across : mu > 0 ? 1 : 0);
   }
 };
 
-// Points that go through one loop.
+// Points that are processed in one vector loop.
 struct Chunk {
   static constexpr int most = 64;
   int count = 0;
   std::ptrdiff_t at[most];
   std::uint64_t evolving[most];  // bit 4 l + n: whether neighbour n of the four at location l evolves
-  double heard[most];            // whether full points are within reach: 1 or 0
-  double mean[3][most];          // of what they say
-  double next[3][most];          // B
+  double has_mean[most];         // 1 if full points are within reach, else 0
+  double mean[3][most];          // mean of B over the nearest full points
+  double next[3][most];          // corrected B
 };
 
-// x where bit n is set, else 0, whatever x is: by its bits, as loads that hang on a condition are not vectorised.
-EULASTIC_INLINE double where(std::uint64_t bits, int n, double x) {
+// Returns x if bit n is set, else 0, for any x. It masks the bits of x, because conditional loads are not vectorised.
+EULASTIC_INLINE double value_if_bit(std::uint64_t bits, int n, double x) {
   return __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, x) & -(bits >> n & 1));
 }
 
-// The mean over those of the four points around that evolve, which is where a component lives that does not live at
-// this point.
+// Mean over the evolving ones of four surrounding points, for a component that is not located at the point itself.
 EULASTIC_INLINE double mean_of_four(const double *q, std::ptrdiff_t s, std::ptrdiff_t t, std::uint64_t evolving) {
-  const double sum =
-      (where(evolving, 0, q[0]) + where(evolving, 1, q[s])) + (where(evolving, 2, q[t]) + where(evolving, 3, q[s + t]));
-  const double count =
-      (where(evolving, 0, 1) + where(evolving, 1, 1)) + (where(evolving, 2, 1) + where(evolving, 3, 1));
+  const double sum = (value_if_bit(evolving, 0, q[0]) + value_if_bit(evolving, 1, q[s])) +
+                     (value_if_bit(evolving, 2, q[t]) + value_if_bit(evolving, 3, q[s + t]));
+  const double count = (value_if_bit(evolving, 0, 1) + value_if_bit(evolving, 1, 1)) +
+                       (value_if_bit(evolving, 2, 1) + value_if_bit(evolving, 3, 1));
   return sum / (count > 0 ? count : 1);
 }
 
-// Component (X, Y) at a point of the location (A, B): centres if A = B, else the edges of that component.
+// Component (X, Y) at a point of location (A, B), which is a centre if A = B, else an edge of that component.
 template <int Dim, int A, int B, int X, int Y>
 EULASTIC_INLINE double component_at(const Terms &t, std::ptrdiff_t p, std::uint64_t evolving) {
-  constexpr bool here[3] = {A != B && (A == 0 || B == 0), A != B && (A == 1 || B == 1), A != B && (A == 2 || B == 2)};
-  constexpr bool there[3] = {X != Y && (X == 0 || Y == 0), X != Y && (X == 1 || Y == 1), X != Y && (X == 2 || Y == 2)};
-  constexpr int d = here[0] != there[0] ? 0 : 1, e = here[2] != there[2] ? 2 : 1;
+  constexpr bool at_point[3] = {A != B && (A == 0 || B == 0), A != B && (A == 1 || B == 1),
+                                A != B && (A == 2 || B == 2)};
+  constexpr bool at_component[3] = {X != Y && (X == 0 || Y == 0), X != Y && (X == 1 || Y == 1),
+                                    X != Y && (X == 2 || Y == 2)};
+  constexpr int d = at_point[0] != at_component[0] ? 0 : 1, e = at_point[2] != at_component[2] ? 2 : 1;
   constexpr int f = kernels::position<Dim>(X, Y), location = X == Y ? 0 : f - Dim + 1;
   const double *q = t.B[f] + p;
-  if constexpr (here[0] == there[0] && here[1] == there[1] && here[2] == there[2]) return q[0];
-  return mean_of_four(q, here[d] ? -t.stride[d] : t.stride[d], here[e] ? -t.stride[e] : t.stride[e],
+  if constexpr (at_point[0] == at_component[0] && at_point[1] == at_component[1] && at_point[2] == at_component[2])
+    return q[0];
+  return mean_of_four(q, at_point[d] ? -t.stride[d] : t.stride[d], at_point[e] ? -t.stride[e] : t.stride[e],
                       evolving >> (4 * location));
 }
 
-// What is known at centres.
+// A value stored at centres, averaged to an edge if A != B.
 template <int A, int B>
 EULASTIC_INLINE double centred_at(const Terms &t, const double *q) {
   if constexpr (A == B) return q[0];
   return kernels::average4(q, -t.stride[A], -t.stride[B]);
 }
 
-// B = S B S^T, then what fades of it, at all points of a chunk.
+// Applies (22), then (23), at all points of a chunk.
 template <int Dim, int A, int B>
 EULASTIC_INLINE void correct_chunk(const Terms &terms, Chunk *chunk) {
   const Terms t = terms;
@@ -113,30 +117,34 @@ EULASTIC_INLINE void correct_chunk(const Terms &terms, Chunk *chunk) {
       gradient.z = centred_at<A, B>(t, t.gradient[2] + p);
     }
     const double excess = (T.xx - 1) + (T.yy - 1) + (T.zz - 1), G = kernels::fma(t.stiffening, excess, t.G);
-    const double missing = 1 - centred_at<A, B>(t, t.phi + p), mu = kernels::fma(t.more, missing, t.mu);
-    const double limited = kernels::fma(t.wave, __builtin_sqrt(G > 0 ? G : 0), mu), k = G > 0 ? G / limited : 0;
-    const kernels::SymmetricTensor K = kernels::relax_traction(T, kernels::unit(gradient), missing * t.kink * k);
-    const double keep = kernels::decay(t.fading * centred_at<A, B>(t, t.rate + p));
-    const auto faded = [=](bool here, double now, double mean)
-                           EULASTIC_BODY { return here ? kernels::fma(keep, now, (1 - keep) * mean) : now; };
+    const double missing = 1 - centred_at<A, B>(t, t.phi + p), mu = kernels::fma(t.excess_viscosity, missing, t.mu);
+    const double limited = kernels::fma(t.wave_term, __builtin_sqrt(G > 0 ? G : 0), mu), k = G > 0 ? G / limited : 0;
+    const kernels::SymmetricTensor corrected =
+        kernels::relax_traction(T, kernels::unit(gradient), missing * t.traction_factor * k);
+    const double keep = kernels::decay(t.relaxation * centred_at<A, B>(t, t.rate + p));
+    const auto relax = [=](bool is_located, double now, double mean)
+                           EULASTIC_BODY { return is_located ? kernels::fma(keep, now, (1 - keep) * mean) : now; };
     const double mean[3] = {c.mean[0][n], A == B ? c.mean[1][n] : 0, A == B && Dim == 3 ? c.mean[2][n] : 0};
     constexpr bool centre = A == B;
-    const kernels::SymmetricTensor F{faded(centre, K.xx, mean[0]),
-                                     faded(centre, K.yy, mean[1]),
-                                     faded(centre && Dim == 3, K.zz, mean[2]),
-                                     faded(A == 1 && B == 2, K.yz, mean[0]),
-                                     faded(A == 0 && B == 2, K.xz, mean[0]),
-                                     faded(A == 0 && B == 1, K.xy, mean[0])};
-    const double before = kernels::determinant(K), after = kernels::determinant(F);
-    const bool fades = (c.heard[n] != 0) & ((after >= least_determinant) | (after >= before));
-    const auto chosen = [=](double yes, double no) EULASTIC_BODY { return fades ? yes : no; };
+    const kernels::SymmetricTensor relaxed{relax(centre, corrected.xx, mean[0]),
+                                           relax(centre, corrected.yy, mean[1]),
+                                           relax(centre && Dim == 3, corrected.zz, mean[2]),
+                                           relax(A == 1 && B == 2, corrected.yz, mean[0]),
+                                           relax(A == 0 && B == 2, corrected.xz, mean[0]),
+                                           relax(A == 0 && B == 1, corrected.xy, mean[0])};
+    const double before = kernels::determinant(corrected), after = kernels::determinant(relaxed);
+    const bool relaxes = (c.has_mean[n] != 0) & ((after >= least_determinant) | (after >= before));
+    const auto chosen = [=](double yes, double no) EULASTIC_BODY { return relaxes ? yes : no; };
     if constexpr (A == B) {
       const auto positive = [](double next, double now) EULASTIC_BODY { return next > 0 ? next : now; };
-      c.next[0][n] = positive(chosen(F.xx, K.xx), T.xx);  // means need not be positive definite
-      c.next[1][n] = positive(chosen(F.yy, K.yy), T.yy);
-      c.next[2][n] = positive(chosen(F.zz, K.zz), T.zz);
+      // Components are means, so the tensor need not be positive definite.
+      c.next[0][n] = positive(chosen(relaxed.xx, corrected.xx), T.xx);
+      c.next[1][n] = positive(chosen(relaxed.yy, corrected.yy), T.yy);
+      c.next[2][n] = positive(chosen(relaxed.zz, corrected.zz), T.zz);
     } else {
-      c.next[0][n] = A == 1 ? chosen(F.yz, K.yz) : B == 2 ? chosen(F.xz, K.xz) : chosen(F.xy, K.xy);
+      c.next[0][n] = A == 1   ? chosen(relaxed.yz, corrected.yz)
+                     : B == 2 ? chosen(relaxed.xz, corrected.xz)
+                              : chosen(relaxed.xy, corrected.xy);
     }
   }
 }
@@ -167,7 +175,7 @@ struct Sum {
   }
 };
 
-// What full points say of some fields further out.
+// Means of some fields over the nearest full points, extrapolated to a point at the surface.
 template <int Fields>
 struct FullPoints {
   const unsigned char *kind;
@@ -175,7 +183,7 @@ struct FullPoints {
   std::ptrdiff_t stride[3];
   static constexpr auto full = SurfaceCorrection::full;
 
-  // Of the minmod slope behind it, none if that lies beyond the ghosts.
+  // Adds `Away` times the minmod slope behind full point o; none if the slope would need points beyond the ghosts.
   template <int Away>
   EULASTIC_INLINE void add_line(std::ptrdiff_t o, std::ptrdiff_t in, Sum<Fields> &one) const {
     if constexpr (Away > 0 && Away + 2 <= SurfaceCorrection::ghosts) {
@@ -186,7 +194,8 @@ struct FullPoints {
       }
     }
   }
-  // The one that is (X, Y, Z) steps of these strides away, extended along its steps by lines.
+  // The full point that is (X, Y, Z) of these strides away, extrapolated linearly along each direction back to the
+  // origin.
   template <int X, int Y, int Z>
   EULASTIC_INLINE Sum<Fields> point(std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t z) const {
     Sum<Fields> one;
@@ -199,7 +208,7 @@ struct FullPoints {
     add_line<Z>(o, z, one);
     return one;
   }
-  // Both sides of a direction first: a mirrored scene gives the mirrored bits.
+  // Adds pairs of opposite points first, so that a mirrored scene gives mirrored bits.
   template <int X, int Y, int Z>
   EULASTIC_INLINE void add_sides(Sum<Fields> &sum) const {
     const std::ptrdiff_t x = stride[0], y = stride[1], z = stride[2];
@@ -215,6 +224,7 @@ struct FullPoints {
     }
     sum.add(all);
   }
+  // Adds all points that are `Steps` steps from face to face away.
   template <int Dim, int Steps, int Y = 0, int Z = 0>
   EULASTIC_INLINE void add_shell(Sum<Fields> &sum) const {
     add_sides<Steps - Y - Z, Y, Z>(sum);
@@ -223,7 +233,7 @@ struct FullPoints {
     else if constexpr (Dim == 3 && Z < Steps)
       add_shell<Dim, Steps, 0, Z + 1>(sum);
   }
-  // The mean over the nearest ones, in steps from face to face; false if none is within reach.
+  // Computes the mean over the nearest full points, counted in steps from face to face; false if none is within reach.
   template <int Dim, int Steps = 1>
   bool mean(double (*out)[Chunk::most], int slot) const {
     Sum<Fields> sum;
@@ -244,7 +254,7 @@ void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const P
   const bool centre = !location->on_edge();
   const int own = static_cast<int>(location - locations_.data()), components = centre ? Dim : 1;
   const int first = centre ? 0 : Dim + own - 1;
-  std::ptrdiff_t around[4][4] = {};  // of every location, where its four points lie
+  std::ptrdiff_t around[4][4] = {};  // offsets of the four surrounding points of each location
   for (std::size_t l = 0; l < locations_.size(); ++l) {
     int n = 1;
     for (int d = 0; d < Dim; ++d) {
@@ -276,12 +286,12 @@ void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const P
         evolving |= std::uint64_t(locations_[l].kind[p + around[l][m]] != outside) << (4 * l + m);
     chunk.at[chunk.count] = p;
     chunk.evolving[chunk.count] = evolving;
-    const auto heard = [&](auto &inside) {
+    const auto compute_mean = [&](auto &inside) {
       inside.kind = location->kind.data() + p;
       for (int f = 0; f < components; ++f) inside.field[f] = terms.B[first + f] + p;
       return inside.template mean<Dim>(chunk.mean, chunk.count);
     };
-    chunk.heard[chunk.count] = terms.fading > 0 && (centre ? heard(centres) : heard(edges));
+    chunk.has_mean[chunk.count] = terms.relaxation > 0 && (centre ? compute_mean(centres) : compute_mean(edges));
     if (++chunk.count == Chunk::most) work();
   }
   work();
@@ -297,7 +307,7 @@ PetscErrorCode SurfaceCorrection::apply(const Box &box, const SurfaceStep &step,
     for (const TensorComponent &c : tensor_locations(dimension)) locations_.push_back({c, {}, {}, {}});
   in_parallel(team, static_cast<int>(locations_.size()) - 1,
               [&](int l) { find_points(box, step.sides, phase, &locations_[l + 1]); });
-  find_points(box, step.sides, phase, &locations_[0]);  // by the edges
+  find_points(box, step.sides, phase, &locations_[0]);  // depends on the edges
   band_.build_band(box, phase.fraction[0], phase.rows, 1);
   measure_centres(box, velocity, phase.fraction[0], work);
   in_parallel(team, team, [&](int part) {
@@ -323,13 +333,13 @@ PetscErrorCode SurfaceCorrection::apply(const Box &box, const SurfaceStep &step,
   PetscFunctionReturn(0);
 }
 
-// Which points are full, which lie at the surface, and what is measured at the centres around.
+// Classification of points (full, surface, outside) and measures at the centres around them.
 
 namespace {
 
 constexpr EvolveRule evolves = evolve_above_half, is_full = evolve_where_full;
 
-// phi at their centres or low edges.
+// The kind of a point from whether it is full and whether it evolves.
 EULASTIC_INLINE unsigned char kind_of(bool is_full_point, bool evolving) {
   return is_full_point ? SurfaceCorrection::full : evolving ? SurfaceCorrection::surface : SurfaceCorrection::outside;
 }
@@ -342,8 +352,8 @@ EULASTIC_CLONES void flag_edges(int n, const double *phi, std::ptrdiff_t a, std:
   }
 }
 
-// Full are centres with full edges around alone; `edges` are the kinds of those, and the strides of the two directions
-// they are staggered in.
+// Kinds of the edges of one component around a row of centres, and the strides of the two directions in which they are
+// staggered. A centre is full only if all edges around it are.
 struct Edges {
   const unsigned char *row;
   std::ptrdiff_t a, b;
@@ -401,7 +411,7 @@ void SurfaceCorrection::find_points(const Box &box, const BoxSides &sides, const
   Box::Range range[3];
   for (int d = 0; d < 3; ++d) {
     range[d] = box.points_near(d, at[d], ghosts);
-    if (at[d] && range[d].end == layout.cells[d] + ghosts) ++range[d].end;  // around the last centres
+    if (at[d] && range[d].end == layout.cells[d] + ghosts) ++range[d].end;  // edges around the last ghost centres
     if (!box.is_wall(d)) continue;
     if (sides[d][0].kind == SideKind::symmetry) range[d].begin = -ghosts;
     if (sides[d][1].kind == SideKind::symmetry) range[d].end = box.points_end(d, at[d]) + ghosts;

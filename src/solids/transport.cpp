@@ -24,23 +24,23 @@ struct TransportTerms {
   EvolveRule rule;
   bool second_of_heun;
   const ActiveSegments *stale;
-  bool whole_rows;  ///< evolves all points of the segments, also those outside of bodies
+  bool whole_rows;  ///< every point of the segments is advanced, also outside bodies; for tests
 };
 
-// Solid fraction at the points of component (a, b): phi itself or its mean over four centres.
+// Solid fraction at the points of component (a, b): phi itself, or its mean over four centres.
 EULASTIC_INLINE double fraction_at(const double *phi, bool diagonal, std::ptrdiff_t a, std::ptrdiff_t b) {
   return diagonal ? *phi : kernels::average4(phi, -a, -b);
 }
 
-// One component at the points of a batch: advection, then stretching and the stage, in two loops as one would need more
-// registers than there are.
+// Advances one component at the points of a batch: advection, then stretching and the stage. These are two loops
+// because a single one would exceed the number of registers.
 template <int Dim, class Viscosity>
 EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
                                        const Field &B, int a, int b, kernels::Batch &batch,
                                        const double *const *carried, double *rate, Field &out) {
   const int f = kernels::position<Dim>(a, b);
   const int other = a == b ? (a + 1) % Dim : b;        // second direction
-  const int third = Dim == 3 ? 3 - a - other : other;  // and the remaining one
+  const int third = Dim == 3 ? 3 - a - other : other;  // the remaining one
   const ConstView phi = phase.fraction[0];
   const kernels::Directions d{phi.stride(a), phi.stride(other), phi.stride(third),
                               t.inverse[a],  t.inverse[other],  t.inverse[third]};
@@ -51,7 +51,7 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity 
   const double *bc = B[kernels::position<Dim>(b, third)].origin, *ac = B[kernels::position<Dim>(a, third)].origin;
   const double threshold = a == b ? t.rule.centre : t.rule.edge, dt = t.dt;
   double *next = out[f].origin;
-  if (Dim == 3) {  // the next plane
+  if (Dim == 3) {  // prefetch the next plane
     batch.ahead[0] = now + (1 + Box::stencil_width) * phi.sz;
     batch.ahead[1] = next + phi.sz;
   }
@@ -60,7 +60,7 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity 
   batch.ahead[1] = nullptr;
   const auto stage = [=](auto second_of_heun, std::ptrdiff_t o, double total, double share, double exterior,
                          double least) EULASTIC_BODY {
-    // positive_definite.hpp; minus infinity stays, so that it is noticed.
+    // Keeps B positive (positive_definite.hpp), but keeps minus infinity visible.
     constexpr double lowest = -std::numeric_limits<double>::max();
     double moved = kernels::fma(dt, total, now[o]);
     if constexpr (second_of_heun()) moved = 0.5 * (next[o] + moved);
@@ -81,14 +81,14 @@ EULASTIC_INLINE void advance_component(const TransportTerms &t, const Viscosity 
               -std::numeric_limits<double>::max());
       });
   };
-  // Loops of their own: the choice inside of one costs a quarter of its time.
+  // The choice is outside the loops; inside one it would cost a quarter of its time.
   if (t.second_of_heun)
     loop(std::true_type());
   else
     loop(std::false_type());
 }
 
-// All components of one location at the points of a batch.
+// Advances all components of one location at the points of a batch.
 template <int Dim, class Viscosity>
 EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
                                    const Field &B, const TensorComponent &location, kernels::Batch &batch, Field &out) {
@@ -105,12 +105,12 @@ EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Viscosity &vis
     for (int c = 0; c < Dim; ++c) advance_component<Dim>(t, viscosity, phase, B, c, c, batch, carried, rate, out);
 }
 
-// The components of one location on rows of plane k, but for the vectors that are `left` for later. Adds the points
-// that evolve to `evolved`.
+// Advances the components of one location on rows of plane k; points that do not fill a batch remain in `pending`. Adds
+// the number of evolving points to `evolved`.
 template <int Dim, class Viscosity>
 EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Viscosity &viscosity, const Phase &phase,
                                   const Field &B, const TensorComponent &location, int j_begin, int j_end, int k,
-                                  Field &out, kernels::Batch &left, std::ptrdiff_t &evolved) {
+                                  Field &out, kernels::Batch &pending, std::ptrdiff_t &evolved) {
   constexpr int reach = Box::stencil_width;
   const auto [a, b, at] = location;
   const bool centre = !location.on_edge();
@@ -124,20 +124,20 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Viscosity &visc
   if (k >= t.box->points_end(2, at[2])) return;
   if (t.stale && t.stale->idle_rows(j_begin, j_end, k) && phase.tensor.evolving.idle_rows(j_begin, j_end, k)) return;
   for (int j = j_begin; j < std::min(j_end, t.box->points_end(1, at[1])); ++j) {
-    int done = 0;  // so far
+    int done = 0;  // points before this one are complete
     const auto set_exterior = [&](int begin, int stop) {
       for (int f = first; f < last; ++f) {
         double *next = out[f].row(j, k);
         for (int i = begin; i < stop; ++i) next[i] = centre ? 1.0 : 0.0;
       }
     };
-    const auto leave_to = [&](int stop) {  // from `done` on nothing evolves
+    const auto skip_to = [&](int stop) {  // no point from `done` to `stop` evolves
       if (!t.stale) return set_exterior(done, stop);
       for (const Segment &old : t.stale->row(j, k))
         set_exterior(std::max(done, old.i_begin), std::min(stop, old.i_end));
     };
     const std::ptrdiff_t row = j * phi.sy + k * phi.sz;
-    // Whether any point of a vector does: segments are those of all locations together.
+    // Whether any point of a vector evolves; segments cover all locations together.
     const auto evolves = [&](std::ptrdiff_t at_first, int count) EULASTIC_BODY {
       if (t.whole_rows || phi.origin[at_first] > 0.5) return true;  // all points within bodies evolve
       bool any = false;
@@ -146,8 +146,8 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Viscosity &visc
       return any;
     };
     for (const Segment &s : phase.tensor.evolving.row(j, k)) {
-      if (Dim == 3) {  // the next plane, what is beside its vectors
-        const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;  // up to its last cache line
+      if (Dim == 3) {  // prefetch the parts of the next plane beside the vectors
+        const int i = s.i_begin - reach, length = s.size() + 2 * reach + 7;  // up to the last cache line
         const auto prefetch_ends = [&](ConstView q, int plane) {
           prefetch(q.row(j, plane) + i, 1);
           prefetch(q.row(j, plane) + s.i_end, 1);
@@ -161,24 +161,24 @@ EULASTIC_INLINE void advance_rows(const TransportTerms &t, const Viscosity &visc
           for (int n = 1; phase.tensor.evolving.idle(j + side, k) && n <= reach; ++n)
             for (int f = first; f < last; ++f) prefetch(B[f].row(j + n * side, k + 1 + reach) + i, length);
       }
-      leave_to(s.i_begin);
+      skip_to(s.i_begin);
       const int stop = std::min(s.i_end, end);
       for (int i = s.i_begin; i < stop; i = done) {
         done = std::min(i + kernels::Batch::width, stop);
         if (evolves(row + i, done - i)) {
           evolved += done - i;
-          kernels::gather(left, row, i, done, advance);
+          kernels::gather(pending, row, i, done, advance);
         } else {
           set_exterior(i, done);
         }
       }
     }
-    leave_to(end);
+    skip_to(end);
   }
 }
 
 struct Evolved {
-  std::ptrdiff_t centres = 0, edges = 0;  // points, each of all its components
+  std::ptrdiff_t centres = 0, edges = 0;  // points that evolve, each with all its components
 };
 
 template <int Dim, class Viscosity>
@@ -186,21 +186,21 @@ EULASTIC_INLINE Evolved advance_tensor(const TransportTerms &t, const Viscosity 
                                        const Phase &phase, const Field &B, Field &out) {
   constexpr int block = block_rows, count = Dim == 3 ? 4 : 2;
   const std::vector<TensorComponent> locations = tensor_locations(Dim);
-  kernels::Batch left[count];  // filled through all planes
+  kernels::Batch pending[count];  // filled across all planes
   Evolved sum;
-  const Int3 &n = t.box->cells();  // rows at high walls belong to the last part
+  const Int3 &n = t.box->cells();  // rows at high boundaries belong to the last part
   const int j_end = part.j_end == n[1] ? phase.tensor.evolving.rows_y() : part.j_end;
   const int k_end = part.k_end == n[2] ? phase.tensor.evolving.rows_z() : part.k_end;
   for (int j = part.j_begin; j < j_end; j += block)
     for (int k = part.k_begin; k < k_end; ++k)
       for (int l = 0; l < count; ++l)
-        advance_rows<Dim>(t, viscosity, phase, B, locations[l], j, std::min(j + block, j_end), k, out, left[l],
+        advance_rows<Dim>(t, viscosity, phase, B, locations[l], j, std::min(j + block, j_end), k, out, pending[l],
                           l == 0 ? sum.centres : sum.edges);
-  for (int l = 0; l < count; ++l) advance_batch<Dim>(t, viscosity, phase, B, locations[l], left[l], out);
+  for (int l = 0; l < count; ++l) advance_batch<Dim>(t, viscosity, phase, B, locations[l], pending[l], out);
   return sum;
 }
 
-// A function for each viscosity: in one for both the compiler keeps too little in registers.
+// One function for each viscosity, because the compiler keeps too little in registers if both are in one.
 EULASTIC_CLONES Evolved with_same_viscosity_2d(const TransportTerms &t, const RowPart &part, const Phase &phase,
                                                const Field &B, Field &out) {
   return advance_tensor<2>(t, kernels::SameViscosity{}, part, phase, B, out);
@@ -237,7 +237,7 @@ PetscErrorCode transport_tensor(const Box &box, const TensorStage &stage, const 
   in_parallel(parts, parts,
               [&](int part) { found[part] = advance(terms, row_part(box, part, parts), phase, tensor, next); });
   Evolved points;
-  for (const Evolved &some : found) points = {points.centres + some.centres, points.edges + some.edges};
+  for (const Evolved &part : found) points = {points.centres + part.centres, points.edges + part.edges};
   const double advection = box.dimension() * (kernels::weno5_flops + 5) + 2;
   const double diagonal = flat ? kernels::stretch_diagonal_flops_2d : kernels::stretch_diagonal_flops_3d;
   const double shear = flat ? kernels::stretch_shear_flops_2d : kernels::stretch_shear_flops_3d;
@@ -259,7 +259,7 @@ PetscErrorCode reset_exterior(const Box &box, const OccupiedRows &before, Phase 
         if (before.idle(j, k) && phase.rows.idle(j, k)) continue;
         for (int i = 0; i < box.points_end(0, at[0]); ++i)
           if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < (a == b ? rule.centre : rule.edge))
-            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // Field::at_rest
+            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // do not touch unused memory (Field::at_rest)
       }
   }
   PetscFunctionReturn(0);

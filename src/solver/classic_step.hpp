@@ -1,5 +1,5 @@
-// The scheme of the paper, `-method classic`: plain Euler in time, bodies follow the new velocity; docs/method.md,
-// section 1.
+// One step of `-method classic`, the scheme of the paper: explicit Euler, and bodies move with the new velocity;
+// docs/method.md, section 1.
 #pragma once
 
 #include "solver/scheme.hpp"

@@ -34,7 +34,7 @@ PetscErrorCode FastStep::step(double dt, const Look &in_middle, const Look &with
   PetscCall(begin_slope(to_middle));
   PetscCall(move_bodies(to_middle));  // (4), (5)
   PetscCall(in_middle());
-  if (now.pressure_before) expect_pressure(dt);
+  if (now.pressure_before) extrapolate_pressure(dt);
   for (FlowPart *part : flow_.parts) PetscCall(part->prepare(dt));
   PetscCall(predict(dt));                             // (7)
   PetscCall(project(dt, rotation(), with_pressure));  // (8) to (10)
@@ -42,7 +42,8 @@ PetscErrorCode FastStep::step(double dt, const Look &in_middle, const Look &with
   PetscFunctionReturn(0);
 }
 
-// What forces are before bodies move, to say how they change within the step.
+// Stores minus the forces per mass at the old positions of bodies, divided by dt; adding the new ones yields their rate
+// of change.
 PetscErrorCode FastStep::begin_slope(double dt) {
   PetscFunctionBeginUser;
   if (!flow_.slope) PetscFunctionReturn(0);
@@ -51,9 +52,10 @@ PetscErrorCode FastStep::begin_slope(double dt) {
   PetscFunctionReturn(0);
 }
 
-// What of the pressure is wrong makes a flow only where viscosity varies or beside bodies, and there it takes steps to
-// settle: that of the last step would leave the velocity behind by a few (docs/method.md, section 16).
-void FastStep::expect_pressure(double dt) {
+// Extrapolates the pressure linearly to the middle of the step. An error of the pressure drives a flow only where
+// viscosity varies or beside bodies, and there it takes several steps to decay, so that with the last pressure the
+// velocity would lag by a few steps (docs/method.md, section 16).
+void FastStep::extrapolate_pressure(double dt) {
   State &state = flow_.now;
   const double interval = state.dt > 0 ? 0.5 * (state.dt + dt) : 0;
   const double ratio = state.pressure_interval > 0 ? interval / state.pressure_interval : 0;
@@ -80,12 +82,13 @@ PetscErrorCode FastStep::predict(double dt) {
   for (FlowPart *part : flow_.parts) PetscCall(part->begin_rate(step));
   WeightedTarget slope;
   if (flow_.slope) slope = {&flow_.slope, 1 / (0.5 * (now.dt + dt))};
-  PetscCall(take_stages(fluid, step, slope));
+  PetscCall(advance_viscous_stages(fluid, step, slope));
   PetscFunctionReturn(0);
 }
 
-// v* by super time stepping around all else of the rate of momentum.
-PetscErrorCode FastStep::take_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope) {
+// Advances the velocity to v* by super time stepping of the viscosity; all other terms of the rate are constant in it.
+PetscErrorCode FastStep::advance_viscous_stages(const Fluid &fluid, const MomentumStep &step,
+                                                const WeightedTarget &slope) {
   const Domain &domain = flow_.domain;
   const BoxSides &sides = flow_.spec.sides;
   State &now = flow_.now;
@@ -122,18 +125,18 @@ PetscErrorCode FastStep::take_stages(const Fluid &fluid, const MomentumStep &ste
   PetscFunctionReturn(0);
 }
 
-// What the viscous force would make of grad(delta p), times dt: nu div, or of the deviatoric stress in 3-D 4/3 of it;
-// half of it where each step begins with the last pressure. Of a body much more viscous than the fluid nothing but the
-// fluid resists a dilation, so that the viscosity of the place turns p into noise there; the least one does not at any
-// contrast.
+// Factor of the divergence in the rotational update: the viscous force of dt grad(delta p) is nu div, or 4/3 of it with
+// the deviatoric stress in 3-D, and half of it if the step begins with the last pressure. In a body much more viscous
+// than the fluid only the fluid resists a dilation, so that the body's viscosity would turn p into noise there; with
+// the least viscosity of the flow this does not happen at any contrast.
 PressureRotation FastStep::rotation() const {
-  const bool expects = static_cast<bool>(flow_.now.pressure_before);
-  if (!viscosity_) return {(expects ? 1 : 0.5) * flow_.fluid.kinematic_viscosity(), 0};
+  const bool extrapolates = static_cast<bool>(flow_.now.pressure_before);
+  if (!viscosity_) return {(extrapolates ? 1 : 0.5) * flow_.fluid.kinematic_viscosity(), 0};
   const ViscosityContrast range = contrast({});
-  const double whole = flow_.domain.dimension() == 3 ? 4. / 3 : 1;
-  if (expects) return {whole * range.least / flow_.fluid.density, 0};
-  if (range.within(5)) return {0, whole / 2};
-  return {whole / 2 * range.least / flow_.fluid.density, 0};
+  const double factor = flow_.domain.dimension() == 3 ? 4. / 3 : 1;
+  if (extrapolates) return {factor * range.least / flow_.fluid.density, 0};
+  if (range.within(5)) return {0, factor / 2};
+  return {factor / 2 * range.least / flow_.fluid.density, 0};
 }
 
 }  // namespace eulastic

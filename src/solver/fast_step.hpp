@@ -1,4 +1,4 @@
-// The scheme of `-method fast`: bodies live half a step behind the velocity, and a step is second order in time;
+// One step of `-method fast`: bodies are half a step behind the velocity, and a step is of second order in time;
 // docs/method.md, sections 2 to 8 and 16.
 #pragma once
 
@@ -14,9 +14,9 @@ public:
 
 private:
   PetscErrorCode begin_slope(double dt);
-  void expect_pressure(double dt);
+  void extrapolate_pressure(double dt);
   PetscErrorCode predict(double dt);
-  PetscErrorCode take_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope);
+  PetscErrorCode advance_viscous_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope);
   PressureRotation rotation() const;
 };
 

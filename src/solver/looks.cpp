@@ -9,7 +9,7 @@ namespace eulastic {
 
 std::size_t Looks::bytes() const {
   std::size_t sum = 0;
-  for (const Phase &phase : copies_) sum += phase.bytes();
+  for (const Phase &phase : advanced_) sum += phase.bytes();
   return sum;
 }
 
@@ -17,69 +17,70 @@ PetscErrorCode Looks::phases(const std::vector<Phase> **phases) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
   *phases = &now.phases;
-  if (!flow_.is_behind() || as_they_are_) PetscFunctionReturn(0);
-  *phases = &copies_;
-  if (copies_step_ == now.step) PetscFunctionReturn(0);
-  copies_.resize(now.phases.size());
-  for (std::size_t p = 0; flow_.memory && p < copies_.size(); ++p)
+  if (!flow_.is_behind() || half_step_behind_) PetscFunctionReturn(0);
+  *phases = &advanced_;
+  if (advanced_step_ == now.step) PetscFunctionReturn(0);
+  advanced_.resize(now.phases.size());
+  for (std::size_t p = 0; flow_.memory && p < advanced_.size(); ++p)
     if (now.phases[p].material.carries_tensor()) {
-      copies_[p].tensor.field = flow_.idle_memory(now.phases[p].tensor.field.count());
+      advanced_[p].tensor.field = flow_.borrow_idle_memory(now.phases[p].tensor.field.count());
       break;
     }
-  for (std::size_t p = 0; p < copies_.size(); ++p) copies_[p].copy_from(now.phases[p]);
-  for (FlowPart *part : flow_.parts) PetscCall(part->move(0.5 * now.dt - back_, &copies_));
-  for (FlowPart *part : flow_.parts) PetscCall(part->place(now.time, &copies_));
-  for (Phase &copy : copies_)
-    if (copy.label) PetscCall(carry_labels(flow_.domain, flow_.exchange, &copy));  // cells that it has reached
-  copies_step_ = now.step;
+  for (std::size_t p = 0; p < advanced_.size(); ++p) advanced_[p].copy_from(now.phases[p]);
+  for (FlowPart *part : flow_.parts) PetscCall(part->move(0.5 * now.dt - time_before_end_, &advanced_));
+  for (FlowPart *part : flow_.parts) PetscCall(part->position_phases(now.time, &advanced_));
+  for (Phase &copy : advanced_)
+    if (copy.label) PetscCall(carry_labels(flow_.domain, flow_.exchange, &copy));  // label the cells it has reached
+  advanced_step_ = now.step;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Looks::bodies(std::vector<BodyInBox> *bodies) {
-  return boxed_.look(flow_.is_behind() && !as_they_are_ ? 0.5 * flow_.now.dt - back_ : 0, bodies);
+  return boxed_.look(flow_.is_behind() && !half_step_behind_ ? 0.5 * flow_.now.dt - time_before_end_ : 0, bodies);
 }
 
 PetscErrorCode Looks::on_grid(const std::function<PetscErrorCode(const std::vector<Phase> &)> &look) {
-  const std::vector<Phase> *seen = nullptr;
+  const std::vector<Phase> *measured = nullptr;
   std::vector<BodyInBox> boxed;
   PetscFunctionBeginUser;
-  PetscCall(phases(&seen));
+  PetscCall(phases(&measured));
   PetscCall(bodies(&boxed));
-  std::vector<Phase> &all = seen == &copies_ ? copies_ : flow_.now.phases;
+  std::vector<Phase> &all = measured == &advanced_ ? advanced_ : flow_.now.phases;
   PetscCall(boxed_.show_on_grid(boxed, &all, [&] { return look(all); }));
   PetscFunctionReturn(0);
 }
 
-// Labels, and rigid bodies that travel, follow on a schedule: for who looks they are brought up in copies.
+// Labels and travelling rigid bodies are updated on a schedule of the run. For observers they are brought up to date in
+// copies, which are swapped in and out.
 PetscErrorCode Looks::behind(const Look &look) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
-  copies_step_ = -1;
-  copies_.resize(now.phases.size());
+  advanced_step_ = -1;
+  advanced_.resize(now.phases.size());
   const auto swap = [this, &now] {
     boxed_.forget_looks();
-    for (std::size_t p = 0; p < copies_.size(); ++p) {
-      Phase &phase = now.phases[p], &copy = copies_[p];
+    for (std::size_t p = 0; p < advanced_.size(); ++p) {
+      Phase &phase = now.phases[p], &copy = advanced_[p];
       if (phase.label) phase.label.swap(copy.label);
       if (!phase.travels) continue;
       phase.fraction.swap(copy.fraction);
       std::swap(phase.rows, copy.rows);
     }
-    as_they_are_ = !as_they_are_;
+    half_step_behind_ = !half_step_behind_;
   };
-  for (std::size_t p = 0; p < copies_.size(); ++p) {
+  for (std::size_t p = 0; p < advanced_.size(); ++p) {
     const Phase &phase = now.phases[p];
-    if (phase.label) copies_[p].label.copy_from(phase.label);
+    if (phase.label) advanced_[p].label.copy_from(phase.label);
     if (!phase.travels) continue;
-    copies_[p].fraction.copy_from(phase.fraction);
-    copies_[p].rows = phase.rows;
+    advanced_[p].fraction.copy_from(phase.fraction);
+    advanced_[p].rows = phase.rows;
   }
   swap();
   struct Restore {
     const decltype(swap) &undo;
     ~Restore() { undo(); }
   } const restore{swap};
-  for (FlowPart *part : flow_.parts) PetscCall(part->place(now.time, &now.phases));
+  for (FlowPart *part : flow_.parts) PetscCall(part->position_phases(now.time, &now.phases));
   for (Phase &phase : now.phases)
     if (phase.label) PetscCall(label_new_cells(flow_.domain, flow_.exchange, &phase));
   PetscCall(look());
@@ -91,7 +92,7 @@ PetscErrorCode Looks::back(const std::vector<double> &times, const Look &look) {
   PetscFunctionBeginUser;
   if (times.empty()) PetscFunctionReturn(0);
   Field begin, end;
-  begin.copy_from(flow_.velocity_star);  // the projection has swapped them
+  begin.copy_from(flow_.velocity_star);  // the projection has swapped the two
   end.copy_from(now.velocity);
   struct Restore {
     Looks *looks;
@@ -100,18 +101,18 @@ PetscErrorCode Looks::back(const std::vector<double> &times, const Look &look) {
     ~Restore() {
       looks->flow_.now.velocity.copy_from(velocity);
       looks->flow_.now.time = time;
-      looks->back_ = 0;
-      looks->copies_step_ = -1;
+      looks->time_before_end_ = 0;
+      looks->advanced_step_ = -1;
       looks->boxed_.forget_looks();
     }
   } const restore{this, end, now.time};
   const std::ptrdiff_t values = end.count() * end.layout().size;
   for (const double time : times) {
-    back_ = restore.time - time;
-    copies_step_ = -1;
+    time_before_end_ = restore.time - time;
+    advanced_step_ = -1;
     boxed_.forget_looks();
     now.time = time;
-    const double share = back_ / now.dt, *from = begin.data(), *to = end.data();
+    const double share = time_before_end_ / now.dt, *from = begin.data(), *to = end.data();
     double *velocity = now.velocity.data();
     for (std::ptrdiff_t i = 0; i < values; ++i) velocity[i] = to[i] + share * (from[i] - to[i]);
     PetscCall(look());

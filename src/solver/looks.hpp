@@ -1,5 +1,5 @@
-// The flow as those see it who measure it: all of it at the time of the velocity. With the staggered scheme phases and
-// bodies in boxes live half a step behind; copies are brought up, the state is not touched.
+// The flow at the time of the velocity, for measures and output. With the staggered method phases and bodies in boxes
+// are half a step behind; copies of them are advanced, and the state does not change.
 #pragma once
 
 #include "parts/flow.hpp"
@@ -13,28 +13,30 @@ class Looks {
 public:
   Looks(Flow *flow, BoxedBodies *boxed) : flow_(*flow), boxed_(*boxed) {}
 
-  /// Valid until the next step.
+  /// Phases at the time of the velocity. Valid until the next step. Collective.
   PetscErrorCode phases(const std::vector<Phase> **phases);
-  /// Bodies of this rank in boxes of their own, with the velocity. Valid until the next step. Collective.
+  /// Bodies in boxes of this rank at the time of the velocity, with the velocity. Valid until the next step.
+  /// Collective.
   PetscErrorCode bodies(std::vector<BodyInBox> *bodies);
-  /// Calls look(phases) where species whose bodies lie in boxes have them on the grid: phi is the sum, B and the label
-  /// are of the body that fills most. Collective.
+  /// Calls look(phases) while the phases of species whose bodies are in boxes hold these bodies on the grid: phi is the
+  /// sum, B and label are those of the body with the largest phi. Collective.
   PetscErrorCode on_grid(const std::function<PetscErrorCode(const std::vector<Phase> &)> &look);
-  /// Calls look() with phases() and bodies() half a step behind, as they are. Only where Flow::is_behind().
+  /// Calls look() with phases() and bodies() as stored, half a step behind the velocity. Requires phases half a step
+  /// behind.
   PetscErrorCode behind(const Look &look);
-  /// Calls look() for each of `times` within the last step, with velocity and phases of that time, to second order;
-  /// pressure is that of the step. The state is then what it was. Only with the staggered scheme, after a step and
-  /// before phases().
+  /// Calls look() for each of `times` within the last step, with velocity and phases of that time to second order, and
+  /// the pressure of the step. The state is restored. Requires the staggered method; call after a step and before
+  /// phases().
   PetscErrorCode back(const std::vector<double> &times, const Look &look);
   std::size_t bytes() const;
 
 private:
   Flow &flow_;
   BoxedBodies &boxed_;
-  std::vector<Phase> copies_;  ///< for phases(), the first B in memory that lies idle between steps
-  std::int64_t copies_step_ = -1;
-  double back_ = 0;           ///< before the end of the step
-  bool as_they_are_ = false;  ///< half a step behind
+  std::vector<Phase> advanced_;  ///< result of phases(); its first B is in memory that is idle between steps
+  std::int64_t advanced_step_ = -1;
+  double time_before_end_ = 0;     ///< time before the end of the step
+  bool half_step_behind_ = false;  ///< return phases and bodies half a step behind
 };
 
 }  // namespace eulastic

@@ -68,7 +68,7 @@ PetscErrorCode Scheme::find_viscosity(Fluid *fluid) {
   PetscFunctionReturn(0);
 }
 
-// Cut faces of rigid bodies have had theirs.
+// Viscous forces on cut faces of rigid bodies are part of their own rate already, so these faces keep their values.
 PetscErrorCode Scheme::add_local_viscous_force(double scale, Field &to) {
   std::vector<double> cut;
   PetscFunctionBeginUser;
@@ -96,20 +96,20 @@ PetscErrorCode Scheme::project(double dt, const PressureRotation &rotation, cons
   PetscFunctionReturn(0);
 }
 
-// Labels are carried on a schedule that is part of the run, never because somebody looks.
+// Labels are updated on a schedule of the run, which does not depend on measures or output.
 PetscErrorCode Scheme::end_step(double dt) {
-  // Cells; below the half that carry_labels() bears, as the speed is some steps old.
+  // Cells. carry_labels() permits half a cell; the margin allows for a speed that is some steps old.
   constexpr double allowed = 0.3;
   State &now = flow_.now;
   PetscFunctionBeginUser;
-  now.travel += now.crossing_rate * dt;
-  if (flow_.bodies.bodies() > 0 && now.travel >= allowed) {
-    for (FlowPart *part : flow_.parts) PetscCall(part->place(now.time + dt, &now.phases));
+  now.travel_since_labels += now.crossing_rate * dt;
+  if (flow_.bodies.bodies() > 0 && now.travel_since_labels >= allowed) {
+    for (FlowPart *part : flow_.parts) PetscCall(part->position_phases(now.time + dt, &now.phases));
     for (Phase &phase : now.phases)
       if (phase.label) PetscCall(carry_labels(flow_.domain, flow_.exchange, &phase));
     PetscCall(flow_.bodies.follow(flow_.domain, now.phases));
     for (FlowPart *part : flow_.parts) PetscCall(part->follow());
-    now.travel = 0;
+    now.travel_since_labels = 0;
   }
   for (FlowPart *part : flow_.parts) PetscCall(part->end_step());
   now.time += dt;

@@ -54,7 +54,7 @@ PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   PetscFunctionReturn(0);
 }
 
-// Increments of steps before are of no use to sweeps that only precondition.
+// The memory of earlier increments is useless to ACM when it only preconditions the solver with rigid bodies.
 PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidBodies> bodies) {
   PetscFunctionBeginUser;
   if (!bodies->exist()) PetscFunctionReturn(0);
@@ -69,15 +69,14 @@ void Solver::set_adhesion(const AdhesionSpec &spec) {
   adhesion_ = spec.pairs.empty() ? nullptr : std::make_unique<AdhesionSpec>(spec);
 }
 
-// The parts of the flow, in the order of a step. A new capability of a scene is a folder with its part, and a line
-// here.
+// Creates the parts of the flow in the order of a step. A new capability is a folder with its part and a line here.
 PetscErrorCode Solver::make_parts() {
   Flow *flow = flow_.get();
   const std::vector<Phase> &phases = flow->now.phases;
   const BoxSides &sides = flow->spec.sides;
   const auto add = [&](std::unique_ptr<FlowPart> part) {
     flow->parts.push_back(part.get());
-    others_.push_back(std::move(part));
+    owned_parts_.push_back(std::move(part));
   };
   PetscFunctionBeginUser;
   std::unique_ptr<Feeders> feeders;
@@ -105,7 +104,7 @@ PetscErrorCode Solver::prepare() {
   const bool tension = part<SurfaceTension>(), membranes = part<MembraneTransport>();
   PetscCall(flow_->work.reserve(work_fields(
       flow_->spec, domain.dimension(), {domain.any_open(), !now.phases.empty(), tension, membranes, bool(rigid_)})));
-  for (FlowPart *part : flow_->parts) PetscCall(part->impose(now.time, now.velocity));
+  for (FlowPart *part : flow_->parts) PetscCall(part->prescribe_velocity(now.time, now.velocity));
   PetscCall(flow_->update_velocity_ghosts(now.velocity, now.time, Box::stencil_width));
   PetscCall(flow_->update_centre_ghosts(now.pressure, 1));
   if (volume_crosses(flow_->spec.sides)) PetscCall(start_flow(flow_.get(), projection_.get()));
@@ -225,7 +224,7 @@ PetscErrorCode Solver::rigid_loads(std::vector<RigidLoad> *loads) {
   PetscFunctionReturn(0);
 }
 
-// What the pressure solver remembers may be missing in a file: that can be changed at a restart.
+// The memory of the pressure solver is optional in a file, because the solver may be changed at a restart.
 PetscErrorCode Solver::carry(CarriedState *state) {
   PetscFunctionBeginUser;
   PetscCall(flow_->carry(state));

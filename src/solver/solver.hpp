@@ -1,4 +1,4 @@
-// A flow with all its parts, advanced step by step. No printing, no rank tests, no options.
+// A flow with all its parts, advanced step by step. It neither prints nor knows options or the number of ranks.
 #pragma once
 
 #include "flow/limits.hpp"
@@ -21,11 +21,11 @@ struct SurfaceMeasure;
 
 class Solver {
 public:
-  /// What a scene has on the grid.
+  /// Contents of a scene that determine the size of the work space.
   struct Contents {
     bool open = false, bodies = false, surface_tension = false, membranes = false, rigid = false;
   };
-  /// Fields of the work space that the method needs for it.
+  /// Number of work-space fields that the method needs for the scene.
   static int work_fields(const Method &method, int dimension, const Contents &scene);
   Solver();
   Solver(Solver &&) noexcept;
@@ -43,59 +43,63 @@ public:
   Flow &flow() { return *flow_; }
   BoxedBodies &boxed() const { return *boxed_; }
   Looks &looks() { return *looks_; }
-  /// A part of this kind, or null where the scene has none.
+  /// The part of this type, or null if the scene has none.
   template <class Part>
   Part *part() const;
 
-  /// Before prepare(). Collective.
+  /// Sets the rigid bodies; before prepare(). Collective.
   PetscErrorCode set_rigid(std::unique_ptr<RigidBodies> bodies);
-  /// Bonds between surfaces; before prepare().
+  /// Sets the bonds between surfaces; before prepare().
   void set_adhesion(const AdhesionSpec &spec);
-  /// Sides with profiles that know the bodies; before prepare().
+  /// Sets boundaries whose profiles depend on the bodies; before prepare().
   void set_profiles(const BoxSides &sides) { flow_->spec.sides = sides; }
-  /// Makes ghosts, B outside the bodies and active segments consistent; call after the initial fields are set.
+  /// Creates the parts and makes ghosts, B outside the bodies and active segments consistent; call after the initial
+  /// fields are set. Collective.
   PetscErrorCode prepare();
-  /// Instead of changing anything: makes ghosts and active segments from a state that was read. prepare() has run
-  /// before, on a scene with the same phases.
+  /// Makes ghosts and active segments consistent after a state has been read. prepare() must have run before, on a
+  /// scene with the same phases. `stages`, `sweeps`: totals of the run so far. Collective.
   PetscErrorCode resume(long stages, long sweeps);
-  /// Measures the flow: time step limits, WENO5's velocity scale.
+  /// Measures the extremes of the flow, which set the limits of the time step and the velocity scale of WENO5.
+  /// Collective.
   PetscErrorCode measure(FlowExtremes *extremes);
   TimeStepLimits limits(const FlowExtremes &extremes) const;
-  /// Mends or forgets B where the grid does not resolve it. A part of the method: for what measure() found, before the
-  /// step.
+  /// Repairs B where the grid does not resolve it. This is part of the method: call it before a step, with the result
+  /// of measure(). Collective.
   PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
-  /// Advances by dt. `in_middle` is called with the velocity of the start and, with the staggered integrator, phases of
-  /// the middle; weighed by the lengths of this step and the last, what it sees and what looks().behind() has seen give
-  /// what belongs to the time of that velocity, to second order. `with_pressure` is called later, with the velocity of
-  /// the start and the pressure of the middle: the same holds for what depends on these alone.
+  /// Advances the flow by dt. `in_middle` is called with the velocity of the start and, with the staggered method, the
+  /// phases of the middle; averages of its measures and those of looks().behind(), weighted by the lengths of this step
+  /// and the last, are measures at the time of that velocity, to second order. `with_pressure` is called later, with
+  /// the velocity of the start and the pressure of the middle; the same holds for measures of these two. Collective.
   PetscErrorCode step(double dt, const Look &in_middle = {}, const Look &with_pressure = {});
 
-  // All of these are of the time of the velocity.
+  // Measures at the time of the velocity. Collective.
 
-  /// Kinematic viscosities (flow/viscosity.hpp), until the next step; null where all are the fluid's.
+  /// Kinematic viscosities (flow/viscosity.hpp), valid until the next step; null if all bodies have the viscosity of
+  /// the fluid.
   PetscErrorCode viscosity_now(const Field **viscosity);
-  /// Energy of the surfaces and what the flow gives to it; zero without surface tension and membranes. `bodies`: what
-  /// is known of the surface of every body, if there are labels and membranes.
+  /// Energy of surfaces and the power that the flow supplies to it; zero without surface tension and membranes.
+  /// `bodies`: measures of the surface of every body, if there are labels and membranes.
   PetscErrorCode surface_energy(SurfaceEnergy *measured, std::vector<SurfaceMeasure> *bodies = nullptr);
-  /// What forces of species and stretch forces do on the flow.
+  /// Power of the forces of species and of stretch forces on the flow.
   PetscErrorCode force_power(double *power);
 
-  /// Null where nothing is rigid.
+  /// Null if the scene has no rigid bodies.
   const RigidFaces *rigid() const { return flow_->rigid; }
-  /// RigidFlow::loads(), none where nothing is rigid.
+  /// Result of RigidFlow::loads(); empty if the scene has no rigid bodies.
   PetscErrorCode rigid_loads(std::vector<RigidLoad> *loads);
   bool is_behind() const { return flow_->is_behind(); }
-  /// One line if rigid bodies touch that should not, or if a body is at a side that volume crosses and cannot leave.
+  /// One line if rigid bodies overlap that must not, or if a body that cannot leave has reached a boundary that volume
+  /// crosses; else empty.
   const std::string &crowded() const { return flow_->crowded; }
-  /// Viscous stages and pressure sweeps since the start.
+  /// Viscous stages and pressure iterations since the start of the run.
   long stages() const;
   long sweeps() const;
   double sound_speed() const;
-  /// All that is carried from one step to the next. Collective.
+  /// Lists everything that persists from one step to the next. Collective.
   PetscErrorCode carry(CarriedState *state);
-  /// What the pressure solver remembers of earlier steps becomes 0.
+  /// Sets the pressure solver's memory of earlier steps to 0.
   void clear_pressure_memory();
-  /// The sides with the pressures that loads have now.
+  /// The boundaries with the present pressures of those that have loads.
   BoxSides sides_now() const { return flow_->sides_now(); }
   /// Bytes of all fields of this rank, work space included.
   std::size_t bytes() const;
@@ -106,12 +110,12 @@ private:
   std::unique_ptr<Flow> flow_;
   std::unique_ptr<Projection> projection_;
   std::unique_ptr<BoxedBodies> boxed_;
-  std::unique_ptr<RigidFlow> rigid_;  ///< null where nothing is rigid
-  std::vector<std::unique_ptr<FlowPart>> others_;
+  std::unique_ptr<RigidFlow> rigid_;  ///< null if the scene has no rigid bodies
+  std::vector<std::unique_ptr<FlowPart>> owned_parts_;
   std::unique_ptr<Scheme> scheme_;
   std::unique_ptr<Looks> looks_;
-  std::unique_ptr<AdhesionSpec> adhesion_;  ///< null: nothing adheres
-  long sweeps_before_ = 0;                  ///< a restart
+  std::unique_ptr<AdhesionSpec> adhesion_;  ///< null if nothing adheres
+  long sweeps_before_ = 0;                  ///< pressure iterations before a restart
 };
 
 template <class Part>

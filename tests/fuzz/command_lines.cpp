@@ -24,10 +24,10 @@ const Words bodies{"-cell_shape sphere -cell_radius .3",
                    "-cell_shape sphere -cell_radius .2 -cell_placement lattice -cell_count 2,1,1",
                    "-cell_shape sphere -cell_radius .1 -cell_placement random -cell_count 3",
                    "-cell_shape tube -cell_radius .3 -cell_axis x"};
-const Words scenes{
-    "-grid_cells 8,8,8", "-grid_cells 12,9,1", "-grid_cells 8,8,1 -boundary_y wall",
-    "-grid_cells 6,7,8 -boundary_y wall -boundary_z wall -wall_ymax_velocity 1,0,0 -wall_ymax_frequency 2",
-    "-grid_cells 9,8,1 -boundary_x wall -boundary_y wall -wall_xmin_velocity 0,1,0"};
+const Words scenes{"-grid_cells 8,8,8", "-grid_cells 12,9,1", "-grid_cells 8,8,1 -boundary_y wall",
+                   "-grid_cells 6,7,8 -boundary_y wall -boundary_z wall -boundary_ymax_velocity 1,0,0 "
+                   "-boundary_ymax_angular_frequency 2",
+                   "-grid_cells 9,8,1 -boundary_x wall -boundary_y wall -boundary_xmin_velocity 0,1,0"};
 const Words methods{"",
                     "-method classic",
                     "-method classic -pressure_solver smac",

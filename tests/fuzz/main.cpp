@@ -250,7 +250,8 @@ PetscErrorCode Fuzzer::prepare() {
   std::sort(cases_.begin(), cases_.end());
   volume_ = text_of(fs::path(EULASTIC_OPTIONS_DIR) / "branched_vessel.h5");
   const std::string line =
-      "-grid_cells 12,10,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -fluid_viscosity .3 -time_end 9 -species cell "
+      "-grid_cells 12,10,1 -boundary_y wall -boundary_ymax_velocity .4,0,0 -fluid_viscosity .3 -time_end 9 -species "
+      "cell "
       "-cell_shape sphere -cell_shear_modulus 1 -cell_radius ";
   PetscCall(make_good(line + ".3", &one_));
   PetscCall(make_good(line + ".12 -cell_placement lattice -cell_count 3,1,1", &several_));

@@ -136,7 +136,7 @@ TEST(CheckpointFile, RefusesAnotherScene) {
   EXPECT_NE(error_of([&] { return load_state(&file, path, &reader.solver, &position); }).find("the grid needs"),
             std::string::npos);
   reader.solver.bodies().add_phase(reader.domain, {BodyPlace{}});
-  EXPECT_NE(error_of([&] { return load_state(&file, path, &reader.solver, &position); }).find("another scene"),
+  EXPECT_NE(error_of([&] { return load_state(&file, path, &reader.solver, &position); }).find("another case"),
             std::string::npos);
 }
 

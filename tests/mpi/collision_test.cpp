@@ -23,13 +23,13 @@ struct Outcome {
 };
 
 const std::string flat_beads =
-    "-time_end 9 -grid_cells 40,36,1 -grid_length 5,4.5,1 -boundary_y wall -wall_ymax_velocity 1,0,0 "
-    "-wall_ymin_velocity "
+    "-time_end 9 -grid_cells 40,36,1 -grid_length 5,4.5,1 -boundary_y wall -boundary_ymax_velocity 1,0,0 "
+    "-boundary_ymin_velocity "
     "-1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead -bead_shape sphere "
     "-bead_radius .6 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv ";
 const std::string solid_beads =
-    "-time_end 9 -grid_cells 28,18,16 -grid_length 3.5,2.25,2 -boundary_y wall -wall_ymax_velocity 1,0,0 "
-    "-wall_ymin_velocity -1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead "
+    "-time_end 9 -grid_cells 28,18,16 -grid_length 3.5,2.25,2 -boundary_y wall -boundary_ymax_velocity 1,0,0 "
+    "-boundary_ymin_velocity -1,0,0 -initial_velocity couette -fluid_viscosity .5 -pressure_solver smac -species bead "
     "-bead_shape sphere -bead_radius .35 -bead_shear_modulus 1 -bead_placement list -bead_positions beads.csv ";
 
 PetscErrorCode advance(Solver *solver, int steps, double dt) {

@@ -64,7 +64,7 @@ TEST_F(RankZero, AlsoForOptionsAndWhatTheyName) {
   put(0, "table", "0,1\n1,2\n");
   put(0, "volume", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n0 0 1 0 0 0 0 1\n");
   const auto result = [&](const std::string &scene) {
-    return parse({place(scene), "-a_positions", place("places"), "-inflow_xmin_velocity", place("table"), "-v_voxels",
+    return parse({place(scene), "-a_positions", place("places"), "-boundary_xmin_velocity", place("table"), "-v_voxels",
                   place("volume")});
   };
   const ParseResult fine = result("scene");

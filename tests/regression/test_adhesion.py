@@ -22,7 +22,7 @@ from scene_case import SceneCase  # noqa: E402
 FILES = "adhesion.csv", "adhesion_bonds.csv", "adhesion_events.csv"
 BOX = ("-grid_cells 24,16,16 -grid_length 12,8,8 -boundary_y wall -fluid_viscosity 1.2 -species cell -cell_shape sphere -cell_radius 1.4 "
        "-cell_shear_modulus .05 -cell_placement list").split()
-SHEAR = "-initial_velocity couette -wall_ymax_velocity .02,0,0".split()
+SHEAR = "-initial_velocity couette -boundary_ymax_velocity .02,0,0".split()
 
 
 def pair(name, **options):

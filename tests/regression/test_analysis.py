@@ -124,7 +124,7 @@ class Channels(WithRoom):
     def test_a_tube_between_pressures(self):
         """In 2-D two rigid plates make the tube: the column of series.csv is Poiseuille's 3/2 / R^3."""
         run = self.solve("tube", *("-grid_cells 8,32,1 -grid_length .5,2,1 -boundary_xmin pressure -boundary_xmax pressure -boundary_y wall "
-                                   "-pressure_xmin_value .4 -species vessel -vessel_shape tube -vessel_axis x -vessel_radius .75 "
+                                   "-boundary_xmin_pressure .4 -species vessel -vessel_shape tube -vessel_axis x -vessel_radius .75 "
                                    "-vessel_law rigid -fluid_viscosity 1 -time_step .1 -time_end 4 -pressure_solver smac").split())
         numpy.testing.assert_allclose(eulastic.pressure_drop(run), 0.4)
         viscosity = eulastic.apparent_viscosity(run)
@@ -267,7 +267,7 @@ class FilesAsTheProgramReadsThem(WithRoom):
     def test_what_the_program_refuses(self):
         case = self.room / "case.opts"
         for text, said in (('-output_dir "open\n', "a quote is not closed"), ("-time_end 3 4\n", 'stray word "4"'),
-                           ("-options_file case.opts\n", "brings in itself")):
+                           ("-options_file case.opts\n", "includes itself")):
             case.write_text(text)
             done = subprocess.run([os.environ["EULASTIC"], case, "-print_options"], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2)

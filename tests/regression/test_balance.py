@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""-balance: other cuts between ranks, by what bodies cost and where they are; the same bits.
+"""-load_balance: other cuts between ranks, by what bodies cost and where they are; the same bits.
 
 Needs EULASTIC=path of the binary and EULASTIC_MPIEXEC.
 """
@@ -16,14 +16,14 @@ FLOW = "-body_force .3,0,0 -initial_velocity_mean .2,0,.4 -time_end 100".split()
 CORNER = [*BOX, *("-grid_cells 12,24,20 "
                   "-species cell,bead -cell_shape sphere -cell_radius .6 -cell_centre 1.5,1,1 -cell_shear_modulus 1 "
                   "-bead_shape sphere -bead_radius .5 -bead_centre .5,2.1,1.2 -bead_shear_modulus .5").split()]
-LINE = re.compile(r"^balance: (the even split stays, )?heaviest rank (\S+) (->|of the mean, at best) (\S+) "
+LINE = re.compile(r"^balance: (the even split is kept, )?heaviest rank (\S+) (->|of the mean, at best) (\S+) "
                   r"(of the mean )?\(estimate\)(.*)$", re.M)
 
 
 class Balance(Restart):
     def line(self, *arguments, ranks=0):
         """(before, whether ranks are cut anew, after) of a run in the directory `run`."""
-        result = self.call(*arguments, "-balance", "-output_dir", "run", "-output_overwrite", ranks=ranks)
+        result = self.call(*arguments, "-load_balance", "-output_dir", "run", "-output_overwrite", ranks=ranks)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(result.stdout.count("balance: "), 1)
         even, before, _, after, _, self.rest = LINE.search(result.stdout).groups()
@@ -83,15 +83,15 @@ class Balance(Restart):
         for cells in "12,24,20", "12,25,19":
             for ranks in (2, 3, 4):
                 self.assertFalse(self.line(*BOX, *FLOW, "-grid_cells", cells, "-time_steps_max", 1, ranks=ranks)[1])
-        result = self.call(*CORNER, *FLOW, "-time_steps_max", 1, "-balance", "-output_dir", "one")
+        result = self.call(*CORNER, *FLOW, "-time_steps_max", 1, "-load_balance", "-output_dir", "one")
         self.assertIn("\nbalance: one rank has all cells\n", result.stdout)
 
     def test_check_only_speaks_of_equal_parts(self):
         case = [*CORNER, *FLOW, "-check_only"]
-        result = self.call(*case, "-balance", "-ranks", 4)
+        result = self.call(*case, "-load_balance", "-ranks", 4)
         self.assertEqual((result.returncode, result.stdout), (2, ""))
-        self.assertRegex(result.stderr, r"^eulastic: error: -balance: .*; accepted: -balance false with it\n$")
-        for more in (["-balance"], ["-ranks", 4]):
+        self.assertRegex(result.stderr, r"^eulastic: error: -load_balance: .*; accepted: -load_balance false with -check_only\n$")
+        for more in (["-load_balance"], ["-ranks", 4]):
             self.assertEqual(self.call(*case, *more).returncode, 0)
 
     def test_too_large_a_box(self):
@@ -102,7 +102,7 @@ class Balance(Restart):
         self.assertTrue(self.line(*case, ranks=2)[1])
         self.assertEqual(self.rest, "")
         self.line(*case, "-guard_memory", 1.01 * needed / limit, ranks=2)
-        self.assertRegex(self.rest, "^; the even split stays: -grid_cells: the fields need about")
+        self.assertRegex(self.rest, "^; the even split is kept: -grid_cells: the fields need about")
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from scene_case import SceneCase  # noqa: E402
 ALL = ("-fluid_viscosity .2 -time_end 100 -guard_volume_drift 0 -guard_energy_growth 0 -series_interval 1e-3 -species cell "
        "-cell_shape ellipsoid -cell_placement list -cell_positions").split()
 # Skalak's law with markers, bending and a viscosity of their own.
-MEMBRANE = ("-cell_law membrane -cell_membrane skalak -cell_surface_shear_modulus .05 -cell_area_modulus 2 -cell_bending_modulus .002 "
+MEMBRANE = ("-cell_law membrane -cell_membrane_law skalak -cell_surface_shear_modulus .05 -cell_skalak_c 2 -cell_bending_modulus .002 "
             "-cell_viscosity .6").split()
 ELASTIC = ["-cell_shear_modulus", ".5"]
 STIRRED = "-body_force .5,0,0 -initial_velocity taylor_green -initial_velocity_amplitude .3".split()
@@ -109,7 +109,7 @@ class Boxes(SceneCase):
         # One after the other: an elastic body flows out and what is left of it at the side is taken out, a membrane leaves whole. As
         # on the grid, whoever owns it, and if the run goes on from a checkpoint while the first one is half out.
         scene = ("-grid_cells 40,24,1 -grid_length 2,1.2,1 -boundary_xmin inflow -boundary_xmax outflow -boundary_y wall "
-                 "-inflow_xmin_velocity 1 -inflow_xmin_profile developed -initial_velocity uniform -initial_velocity_mean 1,0,0 "
+                 "-boundary_xmin_velocity 1 -boundary_xmin_profile developed -initial_velocity uniform -initial_velocity_mean 1,0,0 "
                  "-time_step .01 -pressure_solver smac -cell_semi_axes .2,.2,.2").split()
         rows = [(1.65, .6, 0), (.6, .55, 0)]  # so far apart that their smoothed surfaces do not meet
         for name, kind, steps in ("solids", [], 50), ("membranes", MEMBRANE, 24):

@@ -65,8 +65,8 @@ class CommandLine(unittest.TestCase):
                 ("word another", ["another"]),
                 ("-cell_radius", ["-cell_radius"]),
                 ("-cell_colour red", ["-cell_colour"]),
-                ("-wall_ymin_velocity 0,1,0", ["-wall_ymin_velocity", "normal"]),
-                ("-wall_xmin_velocity 0,1,0", ["-wall_xmin_velocity", "-boundary_x wall"]),
+                ("-boundary_ymin_velocity 0,1,0", ["-boundary_ymin_velocity", "normal"]),
+                ("-boundary_xmin_velocity 0,1,0", ["-boundary_xmin_velocity", "-boundary_x wall"]),
                 ("-cell_placement list -cell_positions no.csv", ["-cell_positions", "no.csv"]),
                 ("-da_processors_y 3", ["rank"])]:
             with self.subTest(added):
@@ -207,13 +207,13 @@ class CommandLine(unittest.TestCase):
             for words in ([], ["-check_only"]):
                 done = self.run_program(*scene, viscosity, *words)
                 self.assertEqual(done.returncode, 0, done.stderr)
-                said = re.findall(r"a is (\S+) times as viscous .* late by some (\d+) steps", done.stdout + done.stderr)
+                said = re.findall(r"a is (\S+) times as viscous .* lags by about (\d+) steps", done.stdout + done.stderr)
                 self.assertEqual(said, [(times, steps)] if times else [])
 
     def test_attached_bodies_too_stiff_for_the_grid_are_a_warning(self):
         scene = ("-grid_cells 16,16,1 -grid_length 2,1,1 -fluid_density 4 -fluid_viscosity 2 -boundary_y wall -time_end 1 "
                  "-time_steps_max 1 -output_overwrite -species a -a_shape slab -a_interval 0,.3 -a_shear_modulus").split()
-        text = "a is attached and too stiff for the grid: "  # sqrt(G/rho) h <= nu: G <= 4 (.5 16)^2 = 256
+        text = "a is anchored and too stiff for the grid: "  # sqrt(G/rho) h <= nu: G <= 4 (.5 16)^2 = 256
         for modulus, spacing in ((250, None), (260, "0.062"), (25600, "0.00625")):
             for words in ([], ["-check_only"]):
                 done = self.run_program(*scene, str(modulus), *words)
@@ -221,7 +221,7 @@ class CommandLine(unittest.TestCase):
                 said = [line for line in (done.stdout + done.stderr).splitlines() if text in line]
                 self.assertEqual(len(said), spacing is not None, done.stdout + done.stderr)
                 self.assertTrue(spacing is None or f"a spacing of at most {spacing}" in said[0], said)
-        free = self.run_program(*scene, "260", "-a_attached", "false", "-check_only")
+        free = self.run_program(*scene, "260", "-a_anchored", "false", "-check_only")
         self.assertNotIn(text, free.stdout)
 
     def test_how_threads_wait(self):
@@ -310,20 +310,20 @@ class CommandLine(unittest.TestCase):
             done = self.run_program(*case, "-time_end", "3e-3", "-output_dir", name, ranks=ranks)
             first, last = done.stdout.splitlines()[0], done.stdout.splitlines()[-1]
             self.assertRegex(first, rf"^eulastic \S+: 8 x 8 x 8 cells on {ranks or 1} ranks?; results go to {name}$")
-            self.assertRegex(last, rf"^eulastic: came to its end at t = 0.003, step 3; results: {name}; longer: ")
+            self.assertRegex(last, rf"^eulastic: reached -time_end at t = 0.003, step 3; results: {name}; to continue: ")
             self.assertEqual("mpiexec -n 2" in last, ranks == 2)
-            command = last.split("; longer: ")[1].replace("LATER", "5e-3").replace("mpiexec", MPIEXEC)
+            command = last.split("; to continue: ")[1].replace("LATER", "5e-3").replace("mpiexec", MPIEXEC)
             longer = subprocess.run(command, shell=True, cwd=self.room, capture_output=True, text=True, timeout=120)
             self.assertEqual((longer.returncode, longer.stderr), (0, ""))
-            self.assertIn("came to its end at t = 0.005, step 5;", longer.stdout.splitlines()[-1])
+            self.assertIn("reached -time_end at t = 0.005, step 5;", longer.stdout.splitlines()[-1])
             stopped = self.run_program(*case, "-time_end", "1e-2", "-output_overwrite", "-output_dir", name, "-guard_divergence",
                                        "1e-30", "-body_force", "1,0,0", "-checkpoint_interval", "1e-9", ranks=ranks)
             self.assertEqual(stopped.returncode, 3)
-            self.assertRegex(stopped.stdout.splitlines()[-1], rf"^eulastic: stopped by a guard at t = .*; results: {name}; goes "
-                             r"on from checkpoint_\d+\.h5, with what the error names: .*eulastic.* -restart ")
+            self.assertRegex(stopped.stdout.splitlines()[-1], rf"^eulastic: stopped by a guard at t = .*; results: {name}; to "
+                             r"continue from checkpoint_\d+\.h5, with the remedy of the error: .*eulastic.* -restart ")
             self.assertIn(json.loads((self.room / name / "summary.json").read_text())["checkpoint"], stopped.stdout)
         steps = self.run_program(*case, "-time_end", "1", "-time_steps_max", "4", "-checkpoint_keep", "0", "-output_dir", "s")
-        self.assertRegex(steps.stdout.splitlines()[-1], "came to its -time_steps_max at .*; no checkpoint to go on from$")
+        self.assertRegex(steps.stdout.splitlines()[-1], "reached -time_steps_max at .*; there is no checkpoint to continue from$")
 
     def test_one_progress_line_in_a_terminal_lines_in_a_log(self):
         case = [*SCENE, "-output_overwrite", "-time_steps_max", "2"]

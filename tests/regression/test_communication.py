@@ -17,7 +17,7 @@ from test_scripts import SCRIPTS, start  # noqa: E402
 
 RANKS = int(os.environ.get("EULASTIC_RANKS", 27))
 STEPS = 4
-METHODS = {"fast": ["-method", "fast", "-time_step", "0.5", "-acm_tolerance", "1e-30", "-acm_sweeps_max", "2"],
+METHODS = {"fast": ["-method", "fast", "-time_step", "0.5", "-acm_tolerance", "1e-30", "-acm_iterations_max", "2"],
            "classic": ["-method", "classic", "-time_step", "0.02"]}
 
 # 8^3 for each rank of 27 or 64, and what the V-cycle gathers: one level coarser, 8 B for a cell.

@@ -62,7 +62,7 @@ class Faults(Restart):
     def test_crash_and_exit(self):
         lines = self.fails("crash", "EulMomentum", 1)
         self.assertEqual(len(lines), 1, lines)
-        self.assertIn("rank 1 met signal 11", lines[0])
+        self.assertIn("rank 1 received signal 11", lines[0])
         self.fails("exit", "EulACM", 1)  # Open MPI has the word
         self.fails("memory", "EulACM", 2, ranks=3)
 
@@ -70,7 +70,7 @@ class Faults(Restart):
         for kind, signal in ("locked", 11), ("heap", 6):
             lines = self.fails(kind, "EulMomentum", 1)
             self.assertEqual(len(lines), 1, lines)
-            self.assertIn(f"rank 1 met signal {signal}", lines[0])
+            self.assertIn(f"rank 1 received signal {signal}", lines[0])
 
     def test_a_failed_fsync_is_not_tried_again(self):
         self.environment["LD_PRELOAD"] = LIBRARY

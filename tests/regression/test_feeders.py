@@ -13,21 +13,21 @@ sys.dont_write_bytecode = True
 from scene_case import BINARY, SceneCase  # noqa: E402
 from eulastic import Run  # noqa: E402
 
-CHANNEL = ("-boundary_y wall -boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity 1 -inflow_xmin_profile "
+CHANNEL = ("-boundary_y wall -boundary_xmin inflow -boundary_xmax outflow -boundary_xmin_velocity 1 -boundary_xmin_profile "
            "developed -initial_velocity poiseuille -initial_velocity_amplitude 1.5 -species disc -disc_shape sphere "
            "-interface_scheme plic -series_interval .05").split()
 SOLID = "-disc_shear_modulus 4".split()
 MEMBRANE = "-disc_law membrane -disc_surface_shear_modulus 2 -disc_viscosity 2".split()
-TRAIN = [*CHANNEL, *("-grid_cells 216,32,1 -grid_length 6.75,1,1 -inflow_xmin_feeder 2 -fluid_viscosity .5 -disc_radius .25 "
+TRAIN = [*CHANNEL, *("-grid_cells 216,32,1 -grid_length 6.75,1,1 -boundary_xmin_generator_length 2 -fluid_viscosity .5 -disc_radius .25 "
                      "-disc_centre .8,.4,0 -time_end 4").split()]
-CROWD = [*CHANNEL, *SOLID, *("-grid_cells 96,32,1 -grid_length 6,2,1 -inflow_xmin_feeder 3 -fluid_viscosity .2 -disc_radius .25 "
+CROWD = [*CHANNEL, *SOLID, *("-grid_cells 96,32,1 -grid_length 6,2,1 -boundary_xmin_generator_length 3 -fluid_viscosity .2 -disc_radius .25 "
                      "-disc_placement random -disc_hematocrit .12 -disc_gap .3 -time_end 2.4").split()]
-TUBE = ("-grid_cells 40,16,16 -grid_length 2.5,1,1 -boundary_xmin inflow -boundary_xmax pressure -inflow_xmin_profile developed "
-        "-inflow_xmin_flow_rate .4 -inflow_xmin_feeder 1.25 -species pipe,cell -pipe_shape tube -pipe_axis x -pipe_law rigid "
+TUBE = ("-grid_cells 40,16,16 -grid_length 2.5,1,1 -boundary_xmin inflow -boundary_xmax pressure -boundary_xmin_profile developed "
+        "-boundary_xmin_flow_rate .4 -boundary_xmin_generator_length 1.25 -species pipe,cell -pipe_shape tube -pipe_axis x -pipe_law rigid "
         "-pipe_radius .42 -pipe_centre 0,.513,.487 -cell_shape sphere -cell_radius .2 -cell_centre .8,.55,.5 "
         "-interface_scheme plic -fluid_viscosity .5 -time_end .8").split()
 BALL = "-cell_shear_modulus 4".split()
-CAPSULE = ("-cell_law membrane -cell_membrane skalak -cell_surface_shear_modulus .5 -cell_bending_modulus .01 "
+CAPSULE = ("-cell_law membrane -cell_membrane_law skalak -cell_surface_shear_modulus .5 -cell_bending_modulus .01 "
            "-cell_viscosity 2.5").split()
 
 
@@ -94,12 +94,12 @@ class Feeders(SceneCase):
     def test_flow_is_developed(self):
         """A pulse that comes in with the profile of a steady flow is not that of a channel; fed, it is, all along."""
         scene = ("-grid_cells 64,32,1 -grid_length 2,1,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax outflow "
-                 "-inflow_xmin_velocity 1 -inflow_xmin_profile developed -inflow_xmin_frequency 6.283185307179586 "
+                 "-boundary_xmin_velocity 1 -boundary_xmin_profile developed -boundary_xmin_angular_frequency 6.283185307179586 "
                  "-fluid_viscosity .05 -time_end 2 -time_step .01 -pressure_solver smac -snapshot_interval 2 "
                  "-snapshot_precision double").split()
         difference = {}
         for length in ("0", "1"):
-            run = self.run_program(f"pulse{length}", *scene, "-inflow_xmin_feeder", length)
+            run = self.run_program(f"pulse{length}", *scene, "-boundary_xmin_generator_length", length)
             with h5py.File(run.directory / "snapshot_000001.h5") as file:
                 u = file["velocity_x"][0]
             difference[length] = abs(u[:, :40] - u[:, 40:41]).max()
@@ -113,11 +113,11 @@ class Feeders(SceneCase):
         flat = [*CHANNEL, *SOLID, "-grid_cells", "64,32,1", "-grid_length", "2,1,1", "-disc_radius", ".2", "-time_end", "1"]
         deep = [*TUBE[:TUBE.index("-species")], *narrow, "-time_end", "1"]
         for says, options in (
-                ("2 is 64 cells; accepted: from 8 to 56", [*flat, "-inflow_xmin_feeder", "2"]),
-                ("0.52 is 16.64 cells; accepted: a whole number", [*flat, "-inflow_xmin_feeder", ".52"]),
-                ("bodies that come in need names", [*flat, "-inflow_xmin_feeder", "1", "-body_series", "false"]),
-                ("-inflow_xmin_feeder: rigid bodies change along it", deep),
-                ("-boundary_xmax inflow", [*flat, "-inflow_xmax_feeder", "1"])):
+                ("2 is 64 cells; accepted: from 8 to 56", [*flat, "-boundary_xmin_generator_length", "2"]),
+                ("0.52 is 16.64 cells; accepted: a whole number", [*flat, "-boundary_xmin_generator_length", ".52"]),
+                ("bodies that enter must be labelled", [*flat, "-boundary_xmin_generator_length", "1", "-body_series", "false"]),
+                ("-boundary_xmin_generator_length: the lumen changes along the inlet generator", deep),
+                ("-boundary_xmax inflow", [*flat, "-boundary_xmax_generator_length", "1"])):
             done = subprocess.run([BINARY, *options, "-output_dir", self.room / "refused"], capture_output=True, text=True,
                                   timeout=60)
             self.assertEqual(done.returncode, 2, done.stderr)

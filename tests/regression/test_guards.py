@@ -35,9 +35,9 @@ class Guards(Restart):
         return lines[0]
 
     def test_divergence(self):
-        one_sweep = [*FLAT, "-acm_sweeps_max", "1", "-acm_memory", "0", "-acm_coarse", "false"]
+        one_sweep = [*FLAT, "-acm_iterations_max", "1", "-acm_search_directions", "0", "-acm_coarse", "false"]
         bound = ["-guard_divergence", "1e-4"]
-        line = self.stopped(*one_sweep, *bound, *OFTEN, says=["rms(div v)", "-guard_divergence 0.0001", "-acm_sweeps"])
+        line = self.stopped(*one_sweep, *bound, *OFTEN, says=["rms(div v)", "-guard_divergence 0.0001", "-acm_iterations_max"])
         self.assertEqual(self.stopped(*one_sweep, *bound, *OFTEN, ranks=2, says=[]), line)  # the same on any ranks
 
     def test_the_last_good_checkpoint_stays(self):
@@ -70,7 +70,7 @@ class Guards(Restart):
         self.assertEqual(self.summary("run")["steps"], 0)
 
     def test_energy(self):
-        says = ["the run has made energy of its own", "-guard_energy_growth 0.3"]
+        says = ["the numerics have generated energy", "-guard_energy_growth 0.3"]
         case = [*FREE, "-time_step", ".03", *NONE[:-2]]
         for force in ("0,0,0", "1e-9,0,0"):  # driven or not
             self.stopped(*case, "-body_force", force, says=says)

@@ -18,7 +18,7 @@ from checksum import change, checksum, content  # noqa: E402
 from restart_case import FLAT, Restart  # noqa: E402
 
 FEEDER = ("-grid_cells 48,24,1 -grid_length 3,1.5,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax pressure "
-          "-inflow_xmin_velocity 1 -inflow_xmin_profile developed -inflow_xmin_feeder 1.5 -fluid_viscosity .1 -species a "
+          "-boundary_xmin_velocity 1 -boundary_xmin_profile developed -boundary_xmin_generator_length 1.5 -fluid_viscosity .1 -species a "
           "-a_shape sphere -a_radius .2 -a_law membrane -a_surface_shear_modulus .1 -a_placement random -a_count 2 "
           "-initial_velocity_mean 1,0,0 -guard_volume_drift 0 -time_end 100").split()
 
@@ -91,7 +91,7 @@ class Numbers(Restart):
                                 says="membrane_markers")
 
 
-MEMBRANE = ("-grid_cells 16,16,1 -grid_length 2,2,1 -boundary_xmin pressure -boundary_xmax pressure -pressure_xmax_windkessel 1,.1,2 "
+MEMBRANE = ("-grid_cells 16,16,1 -grid_length 2,2,1 -boundary_xmin pressure -boundary_xmax pressure -boundary_xmax_windkessel 1,.1,2 "
             "-boundary_y wall -fluid_viscosity .5 -body_force 1,0,0 -species a,b -a_shape sphere -a_radius .4 -a_centre .9,1.2,0 "
             "-a_law membrane -a_surface_shear_modulus .1 -b_shape sphere -b_radius .3 -b_centre 1.3,.4,0 -b_shear_modulus 1 "
             "-b_viscosity 1 -time_end 100 -time_step .01 -guard_volume_drift 0").split()
@@ -159,8 +159,8 @@ class Files(Restart):
             self.refused(path, says=[str(path), "regular file"])
             self.refused(*scene, "-initial_state", path, says=["-initial_state"])
             self.refused(*scene, "-restart", path, says=["-restart"])
-            self.refused(*FEEDER[:FEEDER.index("-inflow_xmin_velocity") + 1], path, *FEEDER[FEEDER.index("-inflow_xmin_velocity") + 2:],
-                         says=["-inflow_xmin_velocity"])
+            self.refused(*FEEDER[:FEEDER.index("-boundary_xmin_velocity") + 1], path, *FEEDER[FEEDER.index("-boundary_xmin_velocity") + 2:],
+                         says=["-boundary_xmin_velocity"])
         (self.room / "include.opts").write_text("-options_file fifo\n")
         self.refused(self.room / "include.opts", says=["fifo", "regular file"])
 

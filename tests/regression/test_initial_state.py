@@ -179,7 +179,7 @@ class Scenes(WithRoom):
                 self.assertAlmostEqual(run.series.bulk_velocity_x[0], mean, delta=0.01)
 
     def test_phase_of_a_wall(self):
-        run = self.run_case(*self.BOX, "-wall_ymax_velocity", "2,0,0", "-wall_ymax_frequency", "5", "-wall_ymax_phase",
+        run = self.run_case(*self.BOX, "-boundary_ymax_velocity", "2,0,0", "-boundary_ymax_angular_frequency", "5", "-boundary_ymax_phase",
                             "0.7", "-probe_points", "1,2,1", "-series_interval", "1e-3")
         numpy.testing.assert_allclose(run.probes.velocity_x, 2 * numpy.cos(5 * run.probes.time + 0.7), atol=1e-12)
 

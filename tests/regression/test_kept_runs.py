@@ -25,7 +25,7 @@ from restart_case import FLAT, OFTEN, ROOT, Restart  # noqa: E402
 CASE = "\n".join(["-grid_cells 16,16,1", "-grid_length 1,1,1", "-fluid_viscosity .1", "-body_force 1,0,0", "-species disc",
                   "-disc_shape sphere", "-disc_radius .25", "-disc_shear_modulus 1", "-time_end .1", ""])
 RIGID = "\n".join(["-grid_cells 16,16,1", "-grid_length 1,1,1", "-boundary_xmin inflow", "-boundary_xmax pressure",
-                   "-boundary_y wall", "-fluid_viscosity .1", "-inflow_xmin_velocity 1", "-inflow_xmin_profile uniform",
+                   "-boundary_y wall", "-fluid_viscosity .1", "-boundary_xmin_velocity 1", "-boundary_xmin_profile uniform",
                    "-time_end .1", ""])
 NAMES = "out[1]", "out (2)", "it's", 'a "quoted" one', "colon:name", "star*?", "hash #1", "back\\slash", "tilde~ $HOME"
 
@@ -126,7 +126,7 @@ class AnyName(Kept):
                 self.assertIn("goes on from its checkpoint", longer.stdout, longer.stderr)
                 self.assertEqual(self.summary(name)["time"], .1)
                 line = longer.stdout.strip().splitlines()[-1]
-                again = subprocess.run(["bash", "-c", re.search("longer: (.*) -time_end", line)[1] + " -time_end .12"], cwd=self.room,
+                again = subprocess.run(["bash", "-c", re.search("to continue: (.*) -time_end", line)[1] + " -time_end .12"], cwd=self.room,
                                        env=self.environment, capture_output=True, text=True, timeout=120)
                 self.assertEqual((again.returncode, again.stderr), (0, ""))
                 self.assertEqual(self.summary(name)["time"], .12)
@@ -154,7 +154,7 @@ class AnyName(Kept):
             for name in "1", "uniform":
                 make(self.room / "sub" / name)
             self.assertEqual(self.call(case, "-check_only").returncode, 0)
-            self.assertIn("\n-inflow_xmin_velocity 1\n", self.call(case, "-print_options").stdout)
+            self.assertIn("\n-boundary_xmin_velocity 1\n", self.call(case, "-print_options").stdout)
             for name in "1", "uniform":
                 path = self.room / "sub" / name
                 path.rmdir() if path.is_dir() else path.unlink()
@@ -174,15 +174,15 @@ class OtherOptions(Kept):
         for solver in "smac", "ksp":
             result = self.call(options, "-restart", "one", "-output_dir", solver, "-time_end", ".2", "-pressure_solver", solver)
             self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertRegex(result.stderr, r"\Aeulastic: warning: -acm_sweeps_max [^\n]*-acm_coarse [^\n]*dropped[^\n]*-pressure_solver acm\n\Z")
+            self.assertRegex(result.stderr, r"\Aeulastic: warning: -acm_iterations_max [^\n]*-acm_coarse [^\n]*dropped[^\n]*-pressure_solver acm\n\Z")
             self.assertEqual(self.summary(solver)["pressure_solver"], solver)
             self.assertNotIn("-acm_", (self.room / solver / "options.txt").read_text())
         result = self.call("ksp/options.txt", "-restart", "ksp", "-output_dir", "back", "-time_end", ".3", "-pressure_solver", "acm")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         # As an earlier version wrote it.
         old = self.room / "old.opts"
-        old.write_text(options.read_text().replace("-disc_law neo_hookean\n", "-disc_law neo_hookean\n-disc_membrane neo_hookean\n"))
-        self.assertIn("-disc_membrane", old.read_text())
+        old.write_text(options.read_text().replace("-disc_law neo_hookean\n", "-disc_law neo_hookean\n-disc_membrane_law neo_hookean\n"))
+        self.assertIn("-disc_membrane_law", old.read_text())
         self.run_case("old", old, "-restart", "one", "-time_end", ".2")
         newest = self.checkpoints("one")[-1]
         with h5py.File(newest, "r+") as file:
@@ -192,23 +192,23 @@ class OtherOptions(Kept):
             file["options"].attrs["checksum"] = numpy.array(f"{checksum(text):016x}", dtype="S16")[()]
             file.attrs.modify("content", text_of(content(file)))
         self.run_case("older", old, "-restart", "one", "-time_end", ".2")
-        old.write_text(old.read_text().replace("-disc_membrane neo_hookean", "-disc_membrane skalak"))
-        self.refused(old, says=["-disc_membrane", "-disc_law membrane"])
+        old.write_text(old.read_text().replace("-disc_membrane_law neo_hookean", "-disc_membrane_law skalak"))
+        self.refused(old, says=["-disc_membrane_law", "-disc_law membrane"])
         # Of the same source, and on the command line: refused as ever.
-        self.refused(self.case, "-pressure_solver", "smac", "-acm_memory", "1", says=["-acm_memory", "-pressure_solver acm"])
+        self.refused(self.case, "-pressure_solver", "smac", "-acm_search_directions", "1", says=["-acm_search_directions", "-pressure_solver acm"])
         wrong = self.room / "wrong.opts"
-        wrong.write_text(CASE + "-pressure_solver smac\n-acm_memory 1\n")
-        self.refused(wrong, says=["-acm_memory", "wrong.opts:11"])
+        wrong.write_text(CASE + "-pressure_solver smac\n-acm_search_directions 1\n")
+        self.refused(wrong, says=["-acm_search_directions", "wrong.opts:11"])
 
     def test_dropped_values_do_not_count(self):
         moving = self.room / "moving.opts"
-        moving.write_text(CASE.replace("-body_force 1,0,0", "-boundary_y wall\n-wall_ymax_velocity 3,0,0"))
+        moving.write_text(CASE.replace("-body_force 1,0,0", "-boundary_y wall\n-boundary_ymax_velocity 3,0,0"))
         result = self.call(moving, "-boundary_y", "periodic", "-print_options")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertNotIn("-wall_ymax", result.stdout)
+        self.assertNotIn("-boundary_ymax_velocity", result.stdout)
         result = self.call(moving, "-boundary_y", "periodic", "-output_dir", "run")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("-wall_ymax_velocity (", result.stderr)
+        self.assertIn("-boundary_ymax_velocity (", result.stderr)
         self.assertLess(self.summary("run")["kinetic_energy"], 1e-20)
 
     def test_outputs_and_intervals(self):
@@ -235,20 +235,20 @@ class OtherOptions(Kept):
 
     def test_options_that_mean_nothing_for_a_law(self):
         rigid = [word for word in CASE.split() if word not in ("-disc_shear_modulus",)][:-3] + ["-time_end", ".1"]
-        for options, says in (("-disc_membrane skalak", "-disc_law membrane or red_cell"), ("-disc_c1 1", "mooney_rivlin"),
+        for options, says in (("-disc_membrane_law skalak", "-disc_law membrane or red_cell"), ("-disc_c1 1", "mooney_rivlin"),
                               ("-disc_velocity 1,0,0", "-disc_law rigid")):
             self.refused(self.case, *options.split(), says=[options.split()[0], says])
         for option, value in (("viscosity", "1"), ("surface_tension", "0"), ("body_force", "0,0,0"), ("body_force_phase", "0"),
                               ("initial_stretch", "1,1,1"), ("contact", "merge")):
             self.refused(*rigid, "-disc_law", "rigid", f"-disc_{option}", value, says=[f"-disc_{option}", "neo_hookean"])
-        self.refused(*rigid, "-disc_law", "membrane", "-disc_surface_shear_modulus", "1", "-disc_area_modulus", "3",
-                     says=["-disc_area_modulus", "-disc_membrane skalak"])
+        self.refused(*rigid, "-disc_law", "membrane", "-disc_surface_shear_modulus", "1", "-disc_skalak_c", "3",
+                     says=["-disc_skalak_c", "-disc_membrane_law skalak"])
 
 
 class Contents(Kept):
     def setUp(self):
         super().setUp()
-        self.case.write_text(RIGID.replace("-inflow_xmin_velocity 1", "-inflow_xmin_velocity pulse.csv"))
+        self.case.write_text(RIGID.replace("-boundary_xmin_velocity 1", "-boundary_xmin_velocity pulse.csv"))
         self.pulse = self.room / "pulse.csv"
         self.pulse.write_text("0,1\n1,1\n")
 
@@ -256,14 +256,14 @@ class Contents(Kept):
         run = self.room / "run"
         self.assertEqual(self.script(self.case, run).returncode, 0)
         text = (run / "options.txt").read_text()
-        content = re.search(r"\n-inflow_xmin_velocity pulse.csv\n# content ([0-9a-f]{16})\n", text)[1]
-        self.assertEqual(self.summary("run")["files"], [{"option": "inflow_xmin_velocity", "path": "pulse.csv", "content": content}])
+        content = re.search(r"\n-boundary_xmin_velocity pulse.csv\n# content ([0-9a-f]{16})\n", text)[1]
+        self.assertEqual(self.summary("run")["files"], [{"option": "boundary_xmin_velocity", "path": "pulse.csv", "content": content}])
         (self.room / "sub").mkdir()
         self.assertIn("already", self.script("../case.opts", "../run", at=self.room / "sub").stdout)
         self.pulse.rename(self.room / "other.csv")
-        self.assertIn("already", self.script(self.case, run, "-inflow_xmin_velocity", "other.csv").stdout)
+        self.assertIn("already", self.script(self.case, run, "-boundary_xmin_velocity", "other.csv").stdout)
         self.pulse.write_text("0,3\n1,3\n")
-        self.refused_by_script(self.case, run, says="-inflow_xmin_velocity")
+        self.refused_by_script(self.case, run, says="-boundary_xmin_velocity")
         self.assertEqual((run / "options.txt").read_text(), text)
         (self.room / "other.csv").rename(self.pulse)
         self.assertIn("already", self.script(self.case, run).stdout)
@@ -273,9 +273,9 @@ class Contents(Kept):
         again = [self.case, "-restart", "run", "-output_dir", "on", "-time_end", ".2"]
         self.pulse.rename(self.room / "same.csv")
         self.pulse.write_text("0,1\n1,1.0\n")
-        self.refused(*again, says=["-inflow_xmin_velocity: cannot change", "pulse.csv with the content"])
+        self.refused(*again, says=["-boundary_xmin_velocity: cannot change", "pulse.csv with the content"])
         self.assertFalse((self.room / "on").exists())
-        self.run_case("on", *again[:3], "-time_end", ".2", "-inflow_xmin_velocity", "same.csv")
+        self.run_case("on", *again[:3], "-time_end", ".2", "-boundary_xmin_velocity", "same.csv")
 
     def test_every_byte_counts(self):
         hashes = set()

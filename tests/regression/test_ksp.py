@@ -60,9 +60,9 @@ class Ksp(unittest.TestCase):
 
     def test_refusals(self):
         for options, says in [
-                ("-pressure_ksp_rtol 1e-3", "-pressure_ksp_rtol: has a meaning only with -pressure_solver ksp"),
-                ("-pressure_solver ksp -pressure_ksp_rtoll 1e-3", "-pressure_ksp_rtoll: unknown to PETSc"),
-                ("-pressure_solver ksp -pressure_sub_pc_type ilu", "-pressure_sub_pc_type: unknown to PETSc"),
+                ("-pressure_ksp_rtol 1e-3", "-pressure_ksp_rtol: applies only with -pressure_solver ksp"),
+                ("-pressure_solver ksp -pressure_ksp_rtoll 1e-3", "-pressure_ksp_rtoll: is unknown to PETSc"),
+                ("-pressure_solver ksp -pressure_sub_pc_type ilu", "-pressure_sub_pc_type: is unknown to PETSc"),
                 ("-pressure_solver ksp -pressure_ksp_type foo", "KSP type foo"),
                 ("-pressure_solver ksp -pressure_pc_type foo", "PC type foo"),
                 ("-pressure_solver ksp -pressure_ksp_rtol foo", "foo"),

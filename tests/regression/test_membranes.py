@@ -15,15 +15,15 @@ CAPSULE = ("-grid_cells 32,32,32 -grid_length 4,4,4 -fluid_viscosity 1 -species 
            "-a_centre 2,2,2 -a_law membrane -a_surface_shear_modulus 1 -interface_scheme plic -time_step 1e-3 "
            "-time_end 2e-3 -series_interval 1e-3 -snapshot_interval 2e-3").split()
 SHEAR = [str(pathlib.Path(__file__).resolve().parents[2] / "options" / "capsule_in_shear.opts"),
-         *("-grid_cells 20,24,20 -grid_length 5,6,5 -wall_ymin_velocity -3,0,0 -wall_ymax_velocity 3,0,0 -snapshot_interval 0").split()]
+         *("-grid_cells 20,24,20 -grid_length 5,6,5 -boundary_ymin_velocity -3,0,0 -boundary_ymax_velocity 3,0,0 -snapshot_interval 0").split()]
 
 # A red cell that lies on a wall, is pressed against it, and drawn along by the other one: 2-D, 16 cells long.
-LYING = ("-grid_cells 48,32,1 -grid_length 24,16,.5 -boundary_y wall -fluid_viscosity 1.2 -wall_ymax_velocity .2,0,0 -species rbc "
+LYING = ("-grid_cells 48,32,1 -grid_length 24,16,.5 -boundary_y wall -fluid_viscosity 1.2 -boundary_ymax_velocity .2,0,0 -species rbc "
          "-rbc_law red_cell -rbc_diameter 8 -rbc_axis y -rbc_centre 12,1.32,.25 -rbc_body_force 0,-4e-3,0 -time_end 600 "
          "-series_interval 10 -snapshot_interval 0").split()
 
 # One that is pressed and pulled along a wall.
-PRESSED = ("-grid_cells 32,16,1 -grid_length 16,8,.5 -boundary_y wall -fluid_viscosity 1.2 -wall_ymax_velocity .2,0,0 -species rbc "
+PRESSED = ("-grid_cells 32,16,1 -grid_length 16,8,.5 -boundary_y wall -fluid_viscosity 1.2 -boundary_ymax_velocity .2,0,0 -species rbc "
            "-rbc_law red_cell -rbc_diameter 8 -rbc_axis y -rbc_centre 8,1.85,.25 -rbc_surface_shear_modulus .1 "
            "-rbc_bending_modulus .004 -rbc_body_force .02,-.04,0 -time_end 5300 -series_interval 10 -snapshot_interval 0").split()
 
@@ -51,7 +51,7 @@ class Membranes(SceneCase):
     def test_ends_are_pulled_apart(self):
         """The flow is its own mirror image, nothing moves as a whole, and the budget is closed."""
         capsule = CAPSULE[:CAPSULE.index("-time_end")]
-        run = self.run_program("pulled", *capsule, *("-a_stretch_force .5 -a_stretch_volume .1 -time_end 2e-2 "
+        run = self.run_program("pulled", *capsule, *("-a_stretch_force .5 -a_stretch_volume_fraction .1 -time_end 2e-2 "
                                                      "-series_interval 1e-3 -snapshot_interval 2e-2 -snapshot_precision double").split())
         x, y, z = run.snapshots[-1].velocity()
         largest, round_off = abs(x).max(), 1e-9
@@ -131,7 +131,7 @@ class Membranes(SceneCase):
     def test_a_wall_above_is_one_below(self):
         """Mirrored scene, mirrored result."""
         below = self.run_program("below", *LYING, "-time_steps_max", "40")
-        options = " ".join(LYING).replace("wall_ymax", "wall_ymin").replace("12,1.32", "12,14.68").replace("0,-4e-3,0", "0,4e-3,0")
+        options = " ".join(LYING).replace("boundary_ymax", "boundary_ymin").replace("12,1.32", "12,14.68").replace("0,-4e-3,0", "0,4e-3,0")
         above = self.run_program("above", *options.split(), "-time_steps_max", "40")
         round_off = 1e-9
         for name in ("kinetic_energy", "surface_energy", "surface_power"):

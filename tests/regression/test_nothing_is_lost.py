@@ -156,7 +156,7 @@ class NothingIsLost(unittest.TestCase):
         done = self.start(*SCENE, "-output_dir", copy, "-restart", copy, "-time_end", ".2", "-series_interval", "5e-4",
                           ranks=2)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("thrown away", done.stdout)  # the last step was that of a shorter run
+        self.assertIn("is discarded", done.stdout)  # the last step was that of a shorter run
         done = self.start(*SCENE, "-output_dir", whole, "-time_end", ".2", "-series_interval", "5e-4")
         self.assertEqual(done.returncode, 0, done.stderr)
         one, other = (json.loads((at / "summary.json").read_text()) for at in (copy, whole))

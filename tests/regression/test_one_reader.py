@@ -20,7 +20,7 @@ SCENE = """-grid_cells 8,9,8 -boundary_y wall -time_end 1e-3 -time_step 1e-3 -op
 FILES = {
     "scene.opts": SCENE,
     "more.opts": "-cell_positions places.csv -boundary_xmin inflow -boundary_xmax outflow\n"
-                 "-inflow_xmin_velocity table.csv -inflow_xmin_profile profile\n",
+                 "-boundary_xmin_velocity table.csv -boundary_xmin_profile profile\n",
     "places.csv": ".5,.5,.5\n",
     "table.csv": "0,0\n1,1\n",
     "profile": 72 * "1 ",

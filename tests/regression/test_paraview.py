@@ -20,7 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import BINARY, launcher  # noqa: E402
 
 CELLS, LENGTH = numpy.array([12, 10, 8]), numpy.array([1.2, 1.0, 0.8])
-SCENE = ("-grid_cells 12,10,8 -grid_length 1.2,1,.8 -boundary_y wall -wall_ymax_velocity 1,0,0 -fluid_viscosity .5 "
+SCENE = ("-grid_cells 12,10,8 -grid_length 1.2,1,.8 -boundary_y wall -boundary_ymax_velocity 1,0,0 -fluid_viscosity .5 "
          "-initial_velocity couette -species cell,seed -cell_shape sphere -cell_radius .2 -cell_centre .6,.3,.4 "
          "-cell_shear_modulus 1 -seed_shape sphere -seed_radius .15 -seed_centre .6,.8,.4 -seed_shear_modulus 1 "
          "-time_step .002 -time_end .01 -snapshot_interval .005").split()

@@ -44,7 +44,7 @@ class Pistons(SceneCase):
         that is some steps late it was .12 of its amplitude off."""
         forces = []
         for name, step in ("automatic", "0"), ("short", ".004"):
-            run = self.run_program(name, *PISTON.split(), *OPEN.split(), *("-piston_velocity .5,0,0 -piston_velocity_frequency 4 "
+            run = self.run_program(name, *PISTON.split(), *OPEN.split(), *("-piston_velocity .5,0,0 -piston_velocity_angular_frequency 4 "
                                    "-series_interval 1e-12 -time_end 1.6 -time_step").split(), step)
             time = numpy.array(run.series.time)
             forces.append(((time[1:] + time[:-1]) / 2, run.bodies.force[1:, 0, 0]))
@@ -69,8 +69,8 @@ class Pistons(SceneCase):
         self.assertAlmostEqual(section / (numpy.pi * radius ** 2), 1, delta=.03)
 
     def test_same_bits_and_mirrored(self):
-        across = "-boundary_y wall -piston_velocity 1.5,0,0 -piston_velocity_frequency .7 -time_end .6"  # back over the side
-        swinging = f"{OPEN} -piston_velocity .5,0,0 -piston_velocity_frequency 4 -time_end .6"
+        across = "-boundary_y wall -piston_velocity 1.5,0,0 -piston_velocity_angular_frequency .7 -time_end .6"  # back over the side
+        swinging = f"{OPEN} -piston_velocity .5,0,0 -piston_velocity_angular_frequency 4 -time_end .6"
         deep = "-boundary_ymin pressure -boundary_ymax wall -boundary_x wall -boundary_z wall -grid_cells 24,16,12 -piston_velocity .5,0,0 -time_end .2"
         for name, scene in (("across", across), ("swinging", swinging), ("deep", deep)):
             options = [*PISTON.split(), *scene.split()]
@@ -96,10 +96,10 @@ class Pistons(SceneCase):
 
     def test_refused(self):
         other = " -species piston,plug -plug_shape slab -plug_axis x -plug_law rigid -plug_interval 2,2.2"
-        for options, says in ((PISTON + " -boundary_x wall -boundary_y wall", "has no way out"),
-                              (PISTON + " -boundary_xmin inflow -inflow_xmin_velocity 1 -boundary_xmax pressure", "has no way out"),
-                              (PISTON.replace("-species piston", "") + other + " -boundary_y wall", "has no way out"),
-                              (PISTON.replace(".8,1.1", "-1,1") + " " + OPEN, "two cells from the sides")):
+        for options, says in ((PISTON + " -boundary_x wall -boundary_y wall", "cannot leave"),
+                              (PISTON + " -boundary_xmin inflow -boundary_xmin_velocity 1 -boundary_xmax pressure", "cannot leave"),
+                              (PISTON.replace("-species piston", "") + other + " -boundary_y wall", "cannot leave"),
+                              (PISTON.replace(".8,1.1", "-1,1") + " " + OPEN, "two cells from the boundaries")):
             done = subprocess.run([BINARY, *options.split(), "-piston_velocity", "1,0,0", "-time_end", ".1", "-output_dir",
                                    self.room / "refused"], capture_output=True, text=True, timeout=60)
             self.assertEqual(done.returncode, 2, done.stderr)

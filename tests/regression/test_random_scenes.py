@@ -79,7 +79,7 @@ def scene(dice):
         words += [f"-boundary_{axis}", "wall"]
         if dice.random() < 0.4:
             speed = [dice.uniform(-0.2, 0.2) if e in axes and e != axis else 0 for e in "xyz"]
-            words += [f"-wall_{axis}{dice.choice(('min', 'max'))}_velocity", numbers(speed)]
+            words += [f"-boundary_{axis}{dice.choice(('min', 'max'))}_velocity", numbers(speed)]
     if not walls and dice.random() < 0.5:
         words += ["-initial_velocity", dice.choice(("taylor_green", "uniform", "shear_wave_xy")),
                   "-initial_velocity_mean", numbers([dice.uniform(-0.3, 0.3) if e in axes else 0 for e in "xyz"])]
@@ -96,7 +96,7 @@ def scene(dice):
     for chance, option in sometimes:
         if dice.random() < chance:
             words += option
-    if walls and dice.random() < 0.3 and f"-wall_{walls[0]}max_velocity" not in words:
+    if walls and dice.random() < 0.3 and f"-boundary_{walls[0]}max_velocity" not in words:
         words += [f"-boundary_{walls[0]}max", "symmetry"]
     for name in names:
         own = random.Random(f"{name} {words}")  # not of the dice, whose other scenes would become different ones
@@ -136,11 +136,11 @@ class RandomScenes(unittest.TestCase):
                 plan.add(ways[-1], *whole, *on(ranks), **number(ranks))
             balanced, first, second = (split(dice, cells) for _ in range(3))
             plan.add(f"{seed}_threads", *whole, "-threads", dice.choice((2, 3)))
-            plan.add(f"{seed}_balanced", *whole, "-balance", *on(balanced), **number(balanced))
+            plan.add(f"{seed}_balanced", *whole, "-load_balance", *on(balanced), **number(balanced))
             plan.add(f"{seed}_whole", *whole, skip_nothing=True)
             plan.add(f"{seed}_half", *half, *on(first), **number(first))
             plan.wait()
-            plan.add(f"{seed}_restarted", *whole, "-restart", self.room / f"{seed}_half", *dice.choice(([], ["-balance"])),
+            plan.add(f"{seed}_restarted", *whole, "-restart", self.room / f"{seed}_half", *dice.choice(([], ["-load_balance"])),
                      *on(second), **number(second))
             outcomes = plan.execute()
             ways += [f"{seed}_{way}" for way in ("threads", "balanced", "whole")]

@@ -46,10 +46,10 @@ class SameBits(Restart):
         self.check(SOLID, [], before=3, after=2)
 
     def test_attached_fast_acm(self):
-        self.check(ATTACHED, "-acm_coarse false -acm_sweeps_max 4".split(), before=0, after=0)
+        self.check(ATTACHED, "-acm_coarse false -acm_iterations_max 4".split(), before=0, after=0)
 
     def test_travelling_body(self):
-        case = " ".join(FLAT[:FLAT.index("-bead_law")]) + (" -bead_law rigid -bead_velocity .6,.2,0 -bead_velocity_frequency "
+        case = " ".join(FLAT[:FLAT.index("-bead_law")]) + (" -bead_law rigid -bead_velocity .6,.2,0 -bead_velocity_angular_frequency "
                                                           ".7 -bead_velocity_phase .4 -bead_angular_velocity 0,0,1")
         self.check(case.split() + FLAT[-4:], [], before=2, after=3)
 
@@ -63,12 +63,12 @@ class SameBits(Restart):
         case = [word.replace("cell,bead", "cell,bead,cross") for word in FLAT[:at]] + (
             "-bead_shape ellipsoid -bead_semi_axes .4,.3,1 -bead_centre 1.6,1.5,0 -bead_law rigid -bead_velocity .05,0,0 "
             "-bead_angular_velocity 0,0,1 -cross_shape voxels -cross_voxels cross.h5:solid -cross_law rigid "
-            "-cross_centre 3.4,2.1,0 -cross_angular_velocity 0,0,.8 -cross_angular_velocity_frequency 3").split()
+            "-cross_centre 3.4,2.1,0 -cross_angular_velocity 0,0,.8 -cross_angular_velocity_angular_frequency 3").split()
         self.check(case + FLAT[-4:], [], before=2, after=3)
 
     def test_pulled_membrane(self):
         case = " ".join(FLAT[:FLAT.index("-bead_law")]) + (" -bead_law membrane -bead_surface_shear_modulus .5 "
-                                                          "-bead_stretch_force .2 -bead_stretch_volume .1")
+                                                          "-bead_stretch_force .2 -bead_stretch_volume_fraction .1")
         self.check(case.split() + FLAT[-4:], [], before=2, after=3)
 
     def test_flat_viscosities(self):
@@ -170,7 +170,7 @@ class Refusals(Restart):
             return [*case, "-restart", "run", "-output_dir", "new"]
         for name, value in [("-grid_cells", "12,10,10"), ("-grid_length", "3,2.5,2.3"), ("-boundary_y", "periodic"),
                             ("-cell_radius", ".6"), ("-cell_shear_modulus", "2"), ("-fluid_viscosity", ".4"),
-                            ("-wall_zmax_velocity", "0,0,0"), ("-method", "classic"), ("-interface_scheme", "weno5"),
+                            ("-boundary_zmax_velocity", "0,0,0"), ("-method", "classic"), ("-interface_scheme", "weno5"),
                             ("-cell_placement", "lattice")]:
             with self.subTest(name):
                 case = changed(name, value)
@@ -185,7 +185,7 @@ class Refusals(Restart):
         self.refused(*SOLID, "-restart", "nowhere", says=["-restart", "nowhere"])
         self.refused(*SOLID, "-restart", ".", "-output_dir", "new", says=["-restart", "no checkpoint"])
         self.assertFalse((self.room / "new").exists(), "something was written")
-        for options in ("-pressure_solver smac", "-acm_memory 0", "-acm_memory 3", "-time_step .01", "-acm_sweeps_max 2"):
+        for options in ("-pressure_solver smac", "-acm_search_directions 0", "-acm_search_directions 3", "-time_step .01", "-acm_iterations_max 2"):
             with self.subTest(options):
                 shutil.rmtree(self.room / "new", ignore_errors=True)
                 self.run_case("new", *SOLID, *options.split(), "-time_steps_max", 6, "-restart", "run")

@@ -44,7 +44,7 @@ class Journey(typing.NamedTuple):
     phase: float = 0
 
     def all_options(self, viscosity, end, solver="acm"):
-        words = {"velocity": ",".join(map(str, self.velocity)), "velocity_frequency": self.frequency, "velocity_phase": self.phase}
+        words = {"velocity": ",".join(map(str, self.velocity)), "velocity_angular_frequency": self.frequency, "velocity_phase": self.phase}
         motion = " ".join(f"-part_{name} {value}" for name, value in words.items() if self.velocity != (0, 0, 0))
         return (f"-species part {self.options} -part_law rigid {motion} {EVERY_STEP} -fluid_viscosity {viscosity} -time_end {end} "
                 f"-pressure_solver {solver}").split()
@@ -59,9 +59,9 @@ ELLIPSE = FLAT + "-part_shape ellipsoid -part_semi_axes .3,.15,.15 -part_centre 
 FROM_REST = -math.pi / 2
 JOURNEYS = {
     "cylinder": Journey(CYLINDER, math.pi / 16, 1 - math.pi / 16, (.5, .2, 0), 6, FROM_REST),
-    "ellipse that turns": Journey(ELLIPSE + " -part_angular_velocity 0,0,2 -part_angular_velocity_frequency 4",
+    "ellipse that turns": Journey(ELLIPSE + " -part_angular_velocity 0,0,2 -part_angular_velocity_angular_frequency 4",
                                   math.pi * .045, 1 - math.pi * .045, (0, 0, 0)),
-    "ellipse that swings and turns": Journey(ELLIPSE + " -part_angular_velocity 0,0,1.5 -part_angular_velocity_frequency 3", math.pi * .045, 1 - math.pi * .045,
+    "ellipse that swings and turns": Journey(ELLIPSE + " -part_angular_velocity 0,0,1.5 -part_angular_velocity_angular_frequency 3", math.pi * .045, 1 - math.pi * .045,
                                              (.3, -.4, 0), 5, FROM_REST),
     "sphere": Journey("-grid_cells 14,14,14 -part_shape sphere -part_radius .3 -part_centre .52,.47,.51", .036 * math.pi,
                       1 - .036 * math.pi, (.4, -.2, .3), 6, FROM_REST),
@@ -157,7 +157,7 @@ class RigidLoads(SceneCase):
         """At automatic steps the pressure is late where it turns round, and the fluid still dissipates: a few per cent, for which
         the guard stopped such runs."""
         options = ("-boundary_y wall -species part -part_law rigid -part_shape cylinder -part_axis z -part_radius .2 -part_centre .33,.3,.5 "
-                   f"-part_angular_velocity 0,0,2 -part_angular_velocity_frequency 4 -fluid_viscosity 20 -time_end .85 {FLAT}{EVERY_STEP}")
+                   f"-part_angular_velocity 0,0,2 -part_angular_velocity_angular_frequency 4 -fluid_viscosity 20 -time_end .85 {FLAT}{EVERY_STEP}")
         made = self.run_program("swings", *options.split()).summary["energy_made_share"]
         print(f"    made {made:.4f}")
         self.assertLess(made, .06)

@@ -28,7 +28,7 @@ def driven(kinetic, elastic, power):
     """A run of fluid and a solid, G = 100, in a unit box with a wall at speed 1: the kinetic bound is 2."""
     series = types.SimpleNamespace(time=TIME, kinetic_energy=kinetic, elastic_energy=elastic, force_power=0 * TIME,
                                    wall_power=power + 0 * TIME)
-    options = {"wall_ymax_velocity": "1,0,0", "a_shear_modulus": "100", "body_force": "0,0,0"}
+    options = {"boundary_ymax_velocity": "1,0,0", "a_shear_modulus": "100", "body_force": "0,0,0"}
     return types.SimpleNamespace(series=series, options=options, length=(1, 1, 1), cells=(32, 32, 1))
 
 

@@ -71,10 +71,10 @@ class Turning(SceneCase):
         at = f"-vane_shape voxels -vane_voxels {self.room / 'thin.h5'}:"
         turn = "-vane_angular_velocity 0,0,1"
         for options, says in ((f"{at}thin {turn}", ("-vane_voxels: ", "three cells thick")),
-                              (f"{at}wide {turn}", ("-vane_voxels: ", "reaches the sides of the box along x")),
-                              (f"{at}wide -vane_velocity 1,0,0", ("-vane_voxels: ", "reaches the sides of the box along x")),
+                              (f"{at}wide {turn}", ("-vane_voxels: ", "reaches the boundaries of the box along x")),
+                              (f"{at}wide -vane_velocity 1,0,0", ("-vane_voxels: ", "reaches the boundaries of the box along x")),
                               (" ".join([*self.make_file(), "-vane_voxels_origin 0,-.2,.2", turn]),
-                               ("-vane_angular_velocity: turns a body to y = ", "two cells from the sides")),
+                               ("-vane_angular_velocity: rotates a body to y = ", "two cells from the boundaries")),
                               (" ".join([*SHAPE, turn, "-method classic"]), ("-vane_angular_velocity: ", "-method fast")),
                               ("-vane_shape tube -vane_radius .5 -vane_axis z " + turn, ("-vane_angular_velocity: ", "accepted"))):
             done = subprocess.run([BINARY, *BOX, *options.split(), "-time_end", ".1", "-output_dir", self.room / "refused"],

@@ -8,7 +8,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
 from scene_case import SceneCase  # noqa: E402
 
-DISC = ("-boundary_y wall -wall_ymin_velocity -.2,0,0 -wall_ymax_velocity .2,0,0 -fluid_viscosity 1 -fluid_density .1 -initial_velocity "
+DISC = ("-boundary_y wall -boundary_ymin_velocity -.2,0,0 -boundary_ymax_velocity .2,0,0 -fluid_viscosity 1 -fluid_density .1 -initial_velocity "
         "couette -species disc -disc_shape sphere -disc_radius 1 -disc_shear_modulus .5 -grid_length 8,8,1").split()
 # By viscosity: time until it is steady; Taylor deformation and inclination, extrapolated from 16 and 32 cells per radius, for
 # a viscosity of 5 with both weights of the elastic stress on edges, phi and (29b), which agree within .02 % and .1 degrees.

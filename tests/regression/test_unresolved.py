@@ -23,8 +23,8 @@ DISC = ("-grid_length 1,1,.0625 -fluid_viscosity .01 -species a -a_shape sphere 
         "-guard_volume_drift 0 -series_interval .5").split()
 COARSE = "-grid_cells 16,16,1".split()
 LONG = COARSE + "-time_end 100".split()
-CAVITY = DISC + "-boundary_x wall -boundary_y wall -wall_ymax_velocity 1,0,0 -a_centre .6,.5,0".split()
-SHEAR = DISC + "-boundary_y wall -wall_ymax_velocity 1,0,0 -wall_ymin_velocity -1,0,0 -a_centre .5,.5,0".split()
+CAVITY = DISC + "-boundary_x wall -boundary_y wall -boundary_ymax_velocity 1,0,0 -a_centre .6,.5,0".split()
+SHEAR = DISC + "-boundary_y wall -boundary_ymax_velocity 1,0,0 -boundary_ymin_velocity -1,0,0 -a_centre .5,.5,0".split()
 SCENES = {"fast": (CAVITY + LONG + ["-a_shear_modulus", ".01"], 330),
           "classic": (SHEAR + LONG + ["-a_shear_modulus", "1"], 7900)}
 WARNING = r"\Aeulastic: warning: t = [^\n]* does not resolve the strain of a body [^\n]*\n\Z"

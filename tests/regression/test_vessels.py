@@ -24,7 +24,7 @@ RADIUS, CELLS = 0.385, 26  # 20 cells across
 TUBE = (f"-grid_cells 8,{CELLS},{CELLS} -grid_length {8 / CELLS},1,1 -boundary_y wall -boundary_z wall -species vessel "
         f"-vessel_shape tube -vessel_axis x -vessel_radius {RADIUS} -vessel_centre 0.05,0.513,0.487").split()
 STEADY = "-body_force 1,0,0 -fluid_viscosity 1 -time_end 1 -series_interval 1 -fluid_inertia false".split()
-SIDES = "-body_force 0,0,0 -boundary_xmin pressure -boundary_xmax pressure -pressure_xmin_value 1".split()
+SIDES = "-body_force 0,0,0 -boundary_xmin pressure -boundary_xmax pressure -boundary_xmin_pressure 1".split()
 RIGID, ELASTIC = ("-vessel_law", "rigid"), ("-vessel_shear_modulus", "10")
 FLOW = math.pi * RADIUS ** 4 / 8
 
@@ -88,7 +88,7 @@ class Vessels(SceneCase):
     def test_force_on_a_post_that_stands_on_a_wall(self):
         """A rigid one takes what the walls do not of the pressure drop, an elastic one passes it on to its wall."""
         post = (*"-grid_cells 64,32,1 -grid_length 2,1,1 -boundary_y wall -species post -post_shape cylinder -post_axis z "
-                "-post_radius .3 -post_centre .9,.03,0 -post_attached true".split(), *STEADY, *SIDES, "-time_end", "3")
+                "-post_radius .3 -post_centre .9,.03,0 -post_anchored true".split(), *STEADY, *SIDES, "-time_end", "3")
         lift = []
         for law in "-post_law rigid", "-post_shear_modulus 20":
             run = self.run_with(*post, *law.split(), "-snapshot_interval", "3")
@@ -167,7 +167,7 @@ class Vessels(SceneCase):
         """Cells close and open as it goes: the level of the pressure stays, and nothing grows in cells that it has closed."""
         scene = ("-grid_cells 24,16,1 -grid_length 3,2,1 -boundary_y wall -body_force .1,0,0 -fluid_viscosity .3 -species post,cell "
                  "-post_shape sphere -post_radius .45 -post_centre 1,.9,0 -post_law rigid -post_velocity .3,.1,0 "
-                 "-post_velocity_frequency 2 -cell_shape sphere -cell_radius .25 -cell_centre 2.3,1.2,0 -cell_shear_modulus 2 "
+                 "-post_velocity_angular_frequency 2 -cell_shape sphere -cell_radius .25 -cell_centre 2.3,1.2,0 -cell_shear_modulus 2 "
                  "-guard_volume_drift 0 -time_end 12 -snapshot_interval 6 -snapshot_fields pressure,solid_fraction "
                  "-snapshot_precision double").split()
         for viscosity in (.3, .15):

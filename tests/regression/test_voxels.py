@@ -258,7 +258,7 @@ class Voxels(WithRoom):
         self.assertAlmostEqual(float(found[2]), 100 * volume / (4 / 3 * numpy.pi * .008), delta=.3)
         self.write("p.csv", b".3,.7,.4\n.9,.7,.4\n")
         self.assertEqual(self.start(*scene).stderr, "")
-        for attached in ("-cell_attached", "true", "-part_attached", "true"), ("-part_voxels_invert",):
+        for attached in ("-cell_anchored", "true", "-part_anchored", "true"), ("-part_voxels_invert",):
             other = self.start(*scene, *attached, "-check_only").stdout
             self.assertEqual("overlap" in other, len(attached) == 1)
 
@@ -307,7 +307,7 @@ class Voxels(WithRoom):
             file["a"], file["b"] = good, good
         self.refused(*RUN, *BODY, "two.h5", "-check_only", says=["several datasets", "two.h5:DATASET", "a, b"])
         whole = (self.room / self.hdf5(good)).read_bytes()
-        for part, says in ((whole[:-100], "truncated"), (b"", "empty"), (b"x" + whole[1:], "no HDF5, NRRD or STL")):
+        for part, says in ((whole[:-100], "truncated"), (b"", "empty"), (b"x" + whole[1:], "not an HDF5, NRRD or STL")):
             self.refused(*RUN, *BODY, self.write("v.h5", part), says=["v.h5", says])
 
     def test_nrrd_refusals(self):

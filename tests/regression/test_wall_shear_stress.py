@@ -49,7 +49,7 @@ class WallShearStress(unittest.TestCase):
 
     def test_moving_wall(self):
         found = self.stress("ymax", "-grid_cells", "4,16,1", "-grid_length", ".25,1,1", "-boundary_y", "wall",
-                            "-wall_ymax_velocity", "3,0,0")
+                            "-boundary_ymax_velocity", "3,0,0")
         numpy.testing.assert_allclose(found, 0.5 - 3, rtol=1e-9)
 
     def test_square_duct_is_second_order(self):

@@ -12,8 +12,8 @@ EULASTIC_INLINE void advection_rate(const Segment &s, ConstView q, const double 
   for (int d = 0; d < Dim; ++d) {
     const double *along = velocity[d];
     kernels::add_advection_rate(
-        s, q, d, kernels::turn(d, Dim), [=](int i) EULASTIC_BODY { return along[i]; }, inverse_spacing[d], epsilon,
-        rate);
+        s, q, d, kernels::direction_order(d, Dim), [=](int i) EULASTIC_BODY { return along[i]; }, inverse_spacing[d],
+        epsilon, rate);
   }
 }
 

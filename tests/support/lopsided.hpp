@@ -1,4 +1,4 @@
-// A split as uneven as it may be: what -balance can lead to.
+// A split as uneven as it may be: what -load_balance can lead to.
 #pragma once
 
 #include "grid/domain.hpp"

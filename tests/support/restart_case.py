@@ -21,11 +21,11 @@ import numpy
 from program import BINARY, launcher
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-FLAT = ("-grid_cells 20,16,1 -grid_length 5,4,1 -boundary_y wall -wall_ymax_velocity .4,0,0 -wall_ymax_frequency .9 "
+FLAT = ("-grid_cells 20,16,1 -grid_length 5,4,1 -boundary_y wall -boundary_ymax_velocity .4,0,0 -boundary_ymax_angular_frequency .9 "
         "-fluid_viscosity .3 -body_force .1,0,0 -species cell,bead -cell_shape sphere -cell_radius .8 "
         "-cell_centre .3,2.2,0 -cell_shear_modulus 1 -bead_shape sphere -bead_radius .6 -bead_centre 2.9,1.5,0 "
         "-bead_law mooney_rivlin -bead_c1 .7 -bead_c2 .3 -bead_c3 .2 -time_end 100 -series_interval .11").split()
-SOLID = ("-grid_cells 12,10,9 -grid_length 3,2.5,2.2 -boundary_y wall -boundary_z wall -wall_zmax_velocity .3,.1,0 "
+SOLID = ("-grid_cells 12,10,9 -grid_length 3,2.5,2.2 -boundary_y wall -boundary_z wall -boundary_zmax_velocity .3,.1,0 "
          "-fluid_viscosity .3 -initial_velocity_mean .5,0,0 -species cell -cell_shape sphere -cell_radius .7 "
          "-cell_centre .2,1.2,1 -cell_shear_modulus 1 -time_end 100 -series_interval .11").split()
 SLAB = ("-species cell,plate -plate_shape slab -plate_axis y -plate_interval 0,.6 -plate_shear_modulus 1").split()

@@ -17,23 +17,23 @@ FEATURES = {
         "fast": "", "classic": "-method classic", "explicit": "-viscous_scheme explicit",
         "constant force": "-elastic_force constant", "weno5": "-interface_scheme weno5",
         "identity": "-solid_exterior identity"},
-    "pressure": {"acm": "", "plain sweeps": "-acm_coarse false -acm_memory 0 -acm_sweeps_max 4", "smac": "-pressure_solver smac"},
+    "pressure": {"acm": "", "plain sweeps": "-acm_coarse false -acm_search_directions 0 -acm_iterations_max 4", "smac": "-pressure_solver smac"},
     "x": {"periodic": "", "walls": "-boundary_x wall",
-          "inflow, outflow": "-boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity .2 -inflow_xmin_frequency 3",
-          "inflow, load": "-boundary_xmin inflow -boundary_xmax pressure -inflow_xmin_flow_rate .3 -inflow_xmin_profile "
-                          "developed -pressure_xmax_windkessel 1,.2,3",
-          "feeder": "-boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity .3 -inflow_xmin_profile developed "
-                    "-inflow_xmin_feeder 1.6"},
-    "y": {"periodic": "", "walls": "-boundary_y wall", "moving wall": "-boundary_y wall -wall_ymax_velocity .4,0,0 "
-          "-wall_ymax_frequency 2", "symmetry": "-boundary_y wall -boundary_ymin symmetry",
-          "pressure": "-boundary_y wall -boundary_ymax pressure -pressure_ymax_value .1"},
+          "inflow, outflow": "-boundary_xmin inflow -boundary_xmax outflow -boundary_xmin_velocity .2 -boundary_xmin_angular_frequency 3",
+          "inflow, load": "-boundary_xmin inflow -boundary_xmax pressure -boundary_xmin_flow_rate .3 -boundary_xmin_profile "
+                          "developed -boundary_xmax_windkessel 1,.2,3",
+          "feeder": "-boundary_xmin inflow -boundary_xmax outflow -boundary_xmin_velocity .3 -boundary_xmin_profile developed "
+                    "-boundary_xmin_generator_length 1.6"},
+    "y": {"periodic": "", "walls": "-boundary_y wall", "moving wall": "-boundary_y wall -boundary_ymax_velocity .4,0,0 "
+          "-boundary_ymax_angular_frequency 2", "symmetry": "-boundary_y wall -boundary_ymin symmetry",
+          "pressure": "-boundary_y wall -boundary_ymax pressure -boundary_ymax_pressure .1"},
     "bodies": {
         "none": None, "solid": f"{BALL} -cell_shear_modulus .6", "mooney_rivlin": f"{BALL} -cell_law mooney_rivlin -cell_c1 .2 "
         "-cell_c2 .1 -cell_c3 .1", "stretched": f"{BALL} -cell_shear_modulus .5 -cell_initial_stretch 1.1,.9,1",
         "viscous solid": f"{BALL} -cell_shear_modulus .5 -cell_viscosity 3",
         "drop": f"{BALL} -cell_shear_modulus 0 -cell_surface_tension .4 -cell_viscosity .3",
         "membrane": f"{BALL} -cell_law membrane -cell_surface_shear_modulus .2",
-        "skalak, bending": f"{BALL} -cell_law membrane -cell_membrane skalak -cell_surface_shear_modulus .2 "
+        "skalak, bending": f"{BALL} -cell_law membrane -cell_membrane_law skalak -cell_surface_shear_modulus .2 "
                            "-cell_bending_modulus .01 -cell_viscosity 2",
         "membrane, grid": f"{BALL} -cell_law membrane -cell_surface_shear_modulus .2 -cell_membrane_scheme grid",
         "pulled membrane": f"{BALL} -cell_law membrane -cell_surface_shear_modulus .2 -cell_stretch_force .1"},
@@ -49,9 +49,9 @@ FEATURES = {
         "turning": "-other_shape ellipsoid -other_semi_axes .5,.3,.4 -other_centre 2.5,1.2,1.1 -other_law rigid "
                    "-other_angular_velocity 0,0,1",
         "travelling": "-other_shape sphere -other_radius .35 -other_centre 2.5,1.2,1.1 -other_law rigid -other_velocity .5,0,0 "
-                      "-other_velocity_frequency 2",
+                      "-other_velocity_angular_frequency 2",
         "from a file": "-other_shape voxels -other_voxels VOLUME -other_shear_modulus 1"},
-    "forces": {"none": "", "steady": "-body_force .3,.1,0", "pulsating": "-body_force .3,0,0 -body_force_frequency 2",
+    "forces": {"none": "", "steady": "-body_force .3,.1,0", "pulsating": "-body_force .3,0,0 -body_force_angular_frequency 2",
                "of a species": "-cell_body_force .2,-.3,0", "no inertia": "-fluid_inertia false -body_force .3,0,0"},
     "start": {"rest": "", "carried": "-initial_velocity_mean .3,0,0", "vortex": "-initial_velocity taylor_green "
               "-initial_velocity_amplitude .3"},

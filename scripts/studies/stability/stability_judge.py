@@ -1,4 +1,4 @@
-"""What scripts/studies/stability/stability_map asks of a finished run."""
+"""The criteria by which scripts/studies/stability/stability_map judges a finished run."""
 import math
 
 import numpy
@@ -73,7 +73,7 @@ def energy_growth(run):
     modulus = max([float(v) for k, v in options.items() if k.endswith("_shear_modulus")] or [0.0])
     energy = series.kinetic_energy + series.elastic_energy
     wall = max([math.hypot(*v) for k, v in [(k, [float(x) for x in v.split(",")]) for k, v in options.items()
-                                            if k.startswith("wall_") and k.endswith("_velocity")]] or [0.0])
+                                            if k.startswith("boundary_") and k.endswith("_velocity") and "," in v]] or [0.0])
     force = max([math.hypot(*v) for v in vectors(options, "body_force")] or [0.0])
     if wall > 0:
         share = series.kinetic_energy / (max(series.kinetic_energy[0], 0) + 2 * volume * wall**2)
@@ -98,7 +98,7 @@ def judge(directory, method):
     if membranes:
         m["energy"] = max(m["energy"], 1 + surface_energy_made(run) - MADE)
     verdict = next(v for v in summary["verdicts"] if v["of"] == "energy")
-    m["made"] = verdict["verdict"] == "do not trust" and "made energy" in verdict["why"]
+    m["made"] = verdict["verdict"] == "do not trust" and "generated energy" in verdict["why"]
     m["forgotten"] = summary["strain_forgotten"]
     m["divergence"] = float(series.divergence_rms.max())
     m["volume"] = float(abs(series.solid_volume / series.solid_volume[0] - 1).max()) if series.solid_volume[0] > 0 else 0.0

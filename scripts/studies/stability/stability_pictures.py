@@ -1,33 +1,34 @@
 """Maps and table of scripts/studies/stability/stability_map."""
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.patches import Patch  # noqa: E402
+from eulastic.figure_style import INK, SMALL, VERMILLION, WIDTH, plt, save
+from matplotlib.patches import Patch
 
 SHEETS = {"flows": ["cavity", "random", "shear", "extension"],
           "bodies": ["cells", "thin", "contact", "stretched", "flat_cells", "solid", "viscosity"],
           "times": ["time_step", "reversing", "layers", "nothing", "long", "corner"]}
-COLOURS = {"stable": "#7fbf7b", "reported": "#fee08b", "energy": "#d73027", "nonfinite": "#67001f", "guard": "#f46d43",
-           "volume": "#b2182b", "phi": "#d6604d", "det B": "#c51b7d", "other": "#542788"}
+STABLE, REPORTED, FAILED = "#66C2A5", "#F0E442", VERMILLION
+# Reason of a failure: the letter on its square.
+LETTERS = {"energy": "E", "nonfinite": "N", "guard": "G", "volume": "V", "phi": "P", "det B": "B", "other": "?"}
+FORCED = "////"  # hatching of time steps that were forced and may fail
 
 
-def verdict(scene):
+def draw_scene(axis, corner, scene):
     reason = scene.outcome["reason"]
+    colour = FAILED if reason else REPORTED if scene.outcome["notes"] else STABLE
+    axis.add_patch(plt.Rectangle(corner, 0.95, 0.95, facecolor=colour, edgecolor=INK, hatch=None if scene.automatic else FORCED, lw=0))
     if reason:
-        return reason if reason in COLOURS else "other"
-    return "reported" if scene.outcome["notes"] else "stable"
+        axis.text(corner[0] + 0.475, corner[1] + 0.475, LETTERS.get(reason, LETTERS["other"]), ha="center", va="center", fontsize=SMALL,
+                  color="white", fontweight="bold")
 
 
 def draw_group(axis, group, method, scenes):
     for scene in scenes:
-        axis.add_patch(plt.Rectangle((group.x.index(scene.x), group.y.index(scene.y)), 0.95, 0.95,
-                                     color=COLOURS[verdict(scene)], hatch=None if scene.automatic else "..", linewidth=0))
+        draw_scene(axis, (group.x.index(scene.x), group.y.index(scene.y)), scene)
+    words = isinstance(group.x[0], str)
     axis.set(xlim=(0, len(group.x)), ylim=(0, len(group.y)), xlabel=group.x_label, ylabel=group.y_label)
-    axis.set_xticks([i + 0.5 for i in range(len(group.x))], group.x, fontsize=6,
-                    rotation=60 if isinstance(group.x[0], str) else 0, ha="right" if isinstance(group.x[0], str) else "center")
-    axis.set_yticks([i + 0.5 for i in range(len(group.y))], group.y, fontsize=6)
-    axis.set_title(f"{group.title}: {method}", fontsize=8)
+    axis.grid(False)
+    axis.set_xticks([i + 0.5 for i in range(len(group.x))], group.x, rotation=60 if words else 0, ha="right" if words else "center")
+    axis.set_yticks([i + 0.5 for i in range(len(group.y))], group.y)
+    axis.set_title(f"{group.title}: {method}")
 
 
 def draw(scenes, directory):
@@ -36,15 +37,20 @@ def draw(scenes, directory):
         names = [n for n in listed if n in groups]
         if not names:
             continue
-        figure, axes = plt.subplots(len(names), 2, figsize=(9, 2.6 * len(names)), squeeze=False)
+        height = 2.6 * len(names)
+        figure, axes = plt.subplots(len(names), 2, figsize=(WIDTH, height + 0.7), squeeze=False)
         for row, name in zip(axes, names):
             for axis, method in zip(row, ("fast", "classic")):
                 draw_group(axis, groups[name], method, [s for s in scenes if s.group.name == name and s.method == method])
-        figure.legend(handles=[Patch(color=c, label=n) for n, c in COLOURS.items()], ncols=len(COLOURS), fontsize=7,
-                      loc="upper center")
-        figure.tight_layout(rect=(0, 0, 1, 0.98))
-        figure.savefig(directory / f"stability_{sheet}.png", dpi=80)
-        plt.close(figure)
+        shown = {LETTERS.get(s.outcome["reason"], LETTERS["other"]) for s in scenes if s.group.name in names and s.outcome["reason"]}
+        causes = ", ".join(f"{letter} {cause}" for cause, letter in LETTERS.items() if letter in shown)
+        entries = [Patch(facecolor=STABLE, label="stable"), Patch(facecolor=REPORTED, label="reported"),
+                   Patch(facecolor=FAILED, label="failed" + (f": {causes}" if causes else ""))]
+        if any(not s.automatic for s in scenes if s.group.name in names):
+            entries.append(Patch(facecolor="white", edgecolor=INK, hatch=FORCED, lw=0, label="step forced, may fail"))
+        figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.5 / (height + 0.7)))
+        figure.legend(handles=entries, ncols=len(entries), loc="upper center")
+        save(figure, directory / f"stability_{sheet}.png", colours=32)
 
 
 def worst(scenes, name, of=max, digits=2):
@@ -72,11 +78,14 @@ def write_table(scenes, path):
     rows = {tuple(line.split(" | ")[:2]): line for line in old.splitlines()[2:] if line.startswith("| ")}
     for group in groups.values():
         for method in ("fast", "classic"):
-            rows["| " + group.title, method] = table_row(group, method, scenes)
+            if method in group.methods:
+                rows["| " + group.title, method] = table_row(group, method, scenes)
+            else:
+                rows.pop(("| " + group.title, method), None)
     failed = [line for line in old.splitlines() if line.startswith("- ") and line[2:].split(", ")[0] not in groups]
     failed += [f"- {s.name}: {s.outcome['reason']}" for s in scenes if s.automatic and s.outcome["reason"]]
     count = sum(int(row.split(" | ")[column]) for row in rows.values() for column in (2, 4))
-    lines = ["| scenes | method | stable | of them reported | failed | energy | phi beyond 0, 1 | volume | det B | largest stretch | B forgotten | from stretch |",
+    lines = ["| scenes | method | stable | of these yellow | failed | energy | phi outside 0 ... 1 | volume | det B | largest stretch | B unresolved | from stretch |",
              "|---|---|---|---|---|---|---|---|---|---|---|---|", *rows.values(), "",
              f"{count} scenes at the automatic time step (up to 1.2 of it), {len(failed)} failed" + (":" if failed else "."),
              *[""] * bool(failed), *failed]

@@ -1,1 +1,1 @@
-"""The cases of scripts/validate: what is run, what is measured, what it is compared with."""
+"""The cases of scripts/validate: the runs, the measured quantities, and their references."""

@@ -9,7 +9,7 @@ from .case import Case, Measure, every, reference, rms, square
 
 IMPORTING = threading.Lock()  # a module that another thread imports is not whole yet
 
-ASKED = "asked for: 1 % at 16 cells per radius"
+ASKED = "goal: 1 % at 16 cells per radius"
 RATE = 0.05  # shear rate of disc_in_shear and sphere_in_shear, viscosity 1: inertia rho gd R^2/mu = .05
 
 
@@ -44,7 +44,7 @@ def disc_in_shear(capillary, quick=False):
         (Measure(f"Ca {capillary}: Taylor deformation", last("taylor_deformation"), {"fast": lambda n: .01 * (256 / n)},
                  ASKED, deformation, True),
          Measure(f"Ca {capillary}: inclination, degrees", last("inclination"), {"fast": lambda n: .5 * (256 / n)},
-                 "asked for: what 1 % of a radius turns it by at D = .1, at 16 cells per radius", angle)),
+                 "goal: the rotation that 1 % of a radius causes at D = .1, with 16 cells per radius", angle)),
         line, ("t", f"D, Ca = {capillary}"))
 
 
@@ -69,7 +69,7 @@ def relaxation(title, prefix, full, quick):
         "S7", title, "stretched_disc", lambda n, _: {**square(n, 20), "snapshot_interval": 0}, full, quick,
         tuple(Measure(f"{prefix}stretch at G t/mu = {t}", stretch_at(100 * t),
                       {"fast": lambda n, part=(want - 1): .01 * part * (320 / n)},
-                      ASKED + ", of the stretch less 1", want)
+                      ASKED + ", relative to the stretch minus 1", want)
               for t, want in LET_GO.items()),
         stretch_line, ("G t/mu", prefix + "stretch"))
 
@@ -92,26 +92,26 @@ def sphere(capillary, deformation, angle, time, keys, quick=()):
     def options(key, _):
         n, box = key
         return {"grid_cells": ",".join([str(n * box)] * 3), "grid_length": ",".join([str(box)] * 3),
-                "wall_ymin_velocity": f"{-RATE * box / 2},0,0", "wall_ymax_velocity": f"{RATE * box / 2},0,0",
+                "boundary_ymin_velocity": f"{-RATE * box / 2},0,0", "boundary_ymax_velocity": f"{RATE * box / 2},0,0",
                 "sphere_shear_modulus": RATE / capillary, "time_end": time / RATE, "snapshot_interval": 0}
 
     def line(run):
         return (run.bodies.time, run.bodies.taylor_deformation[:, 0]), ([0, time / RATE], [deformation] * 2)
     what = f"Ca {capillary}: %s, extrapolated"
-    why = "asked for: 1 %, extrapolated with (R/L)^3 and h^2 from 8 cells per radius on"
+    why = "goal: 1 % after extrapolation in (R/L)^3 and h^2 from 8 cells per radius on"
     return Case("S8", f"Sphere in shear flow, Ca = {capillary}", "sphere_in_shear", options,
                 every(keys, methods=("fast",), solvers=("acm",)),
                 every(quick, methods=("fast",), solvers=("acm",)) if quick else (),
                 (Measure(what % "Taylor deformation", limit("taylor_deformation"), {"fast": .01}, why, deformation, True,
                          whole=True),
-                 Measure(f"Ca {capillary}: error of D at h, of (h/R)^2", limit("taylor_deformation", True), {}, "of the same fit",
+                 Measure(f"Ca {capillary}: relative error of D over (h/R)^2", limit("taylor_deformation", True), {}, "coefficient of the same fit",
                          whole=True),
                  Measure(f"Ca {capillary}: Taylor deformation in this box", last("taylor_deformation"), {},
-                         "walls and images raise it", deformation, True),
-                 Measure(what % "inclination", limit("inclination"), {"fast": .5}, "as S6", angle, whole=True)),
-                line, ("t", f"D, Ca = {capillary}"),
+                         "walls and periodic images increase D", deformation, True),
+                 Measure(what % "inclination", limit("inclination"), {"fast": .5}, "goal, as in S6", angle, whole=True)),
+                line, ("t", f"D, Ca = {capillary}; reference: unbounded"),
                 (Measure(what % "Taylor deformation", limit("taylor_deformation"), {"fast": .05},
-                         "asked for: 1 % at 16 cells per radius (S6), second order to 6: 7 %; less for the extrapolation",
+                         "goal: 1 % at 16 cells per radius (S6), of second order, so 7 % at 6; less after the extrapolation",
                          deformation, True, whole=True),))
 
 
@@ -136,12 +136,12 @@ def ring(viscosity, limits, kept, settings, quick):
     options = {"fluid_density": 1, "fluid_viscosity": viscosity, "disc_semi_axes": f"{.2 * 1.02},{.2 / 1.02},1",
                "disc_initial_stretch": f"1.02,{1 / 1.02},1", "disc_shear_modulus": 1, "time_end": 2, "series_interval": 0.02,
                "snapshot_interval": 0}
-    return Case("S9", f"Disc that rings, viscosity {viscosity}", "stretched_disc", lambda n, _: {**square(n, 2), **options},
+    return Case("S9", f"Ringing disc, viscosity {viscosity}", "stretched_disc", lambda n, _: {**square(n, 2), **options},
                 settings, quick,
-                (Measure(f"viscosity {viscosity}: rms error of the deformation to t = 2, of its start", error,
-                         {"fast": lambda n: asked[n]}, "asked for",
-                         misses={"fast": (lambda n: instead[n], "the surface is first order where viscosity damps waves of a "
-                                          "cell, and waves thinner than a cell are lost")}),),
+                (Measure(f"viscosity {viscosity}: rms error of the deformation to t = 2, relative to its start", error,
+                         {"fast": lambda n: asked[n]}, "goal",
+                         misses={"fast": (lambda n: instead[n], "the surface is of first order where viscosity damps waves of a "
+                                          "cell, and waves shorter than a cell are lost")}),),
                 lambda run: (ringing(run), (want[:, 0], want[:, 1])), ("t", f"D over its start, viscosity {viscosity}"))
 
 
@@ -160,7 +160,7 @@ def path_distance(begin, end):
 
 
 AREA_DRIFT = {"fast, ACM": lambda n: 8e-7 * n / math.sqrt(math.pi * .2**2), "fast, SMAC": 1e-12}
-AREA_WHY = "conserved but for div v: T rms(div v)/sqrt(area), rms(div v) = -acm_tolerance/h; SMAC: round-off"
+AREA_WHY = "the area changes by div v only: T rms(div v)/sqrt(area) with rms(div v) h equal to the option -acm_tolerance; with SMAC round-off"
 
 
 def drift(run):
@@ -211,11 +211,11 @@ def thickness_line(run):
 
 CASES = (
     disc_in_shear(.05), disc_in_shear(.1, quick=True), disc_in_shear(.2),
-    relaxation("Stretched disc lets go", "", every((80, 160, 320), methods=("fast",), solvers=("acm",), time_step=0.25)
+    relaxation("Released stretched disc", "", every((80, 160, 320), methods=("fast",), solvers=("acm",), time_step=0.25)
                + every((160,), methods=("fast",), solvers=("smac",), time_step=0.25)
                + every((40, 80), methods=("classic",), solvers=("acm",), fluid_density=1),
                every((80, 160), methods=("fast",), solvers=("acm",), time_step=1)),
-    relaxation("Stretched disc, automatic time step", "automatic step: ",
+    relaxation("Released stretched disc, automatic time step", "automatic step: ",
                every((80, 160, 320), methods=("fast",), solvers=("acm",)), ()),
     sphere(.05, .062058, 41.449, 1.6, ((8, 6), (8, 8), (12, 6), (16, 6))),
     sphere(.1, .121639, 38.065, 2.4, ((8, 6), (8, 8), (8, 10), (10, 6), (12, 6)), ((4, 6), (4, 8), (6, 6))),
@@ -229,25 +229,25 @@ CASES = (
          every((64, 128, 256), solvers=("acm",)) + every((64, 128), methods=("fast",), solvers=("smac",)),
          every((64, 128), methods=("fast",), solvers=("acm",)),
          (Measure("distance from the path to t = 5", path_distance(0, 5), {"fast": lambda n: .005 * (256 / n)},
-                  "agreement of two published methods, .002, and 1 cell at 256^2"),
+                  "difference of two published methods, .002, and about one cell at 256^2"),
           Measure("distance from the path to t = 8", path_distance(0, 8), {"fast": lambda n: .01 * (256 / n)},
-                  "the same, carried past the lid"),
+                  "twice as much, after the disc has passed the lid"),
           Measure("drift of the area", drift, AREA_DRIFT, AREA_WHY)),
          path_line, ("x", "y"),
          (Measure("distance from the path to t = 2", path_distance(0, 2), {"fast": lambda n: .005 * (128 / n)},
-                  "the gate of 256^2 to t = 5, of which this is the smooth part; first order"),
-          Measure("drift of the area", drift, AREA_DRIFT, AREA_WHY)), {"time_end": 2}),
+                  "that of 256^2 to t = 5, scaled with h"),
+          Measure("drift of the area", drift, AREA_DRIFT, AREA_WHY)), {"time_end": 2}, scales={"aspect": "equal"}),
     Case("R1", "The shape of a red cell", "channel_rbc",
          lambda n, _: {"grid_cells": f"{n},{n // 2},{n}", "grid_length": "10.56,5.28,10.56", "rbc_count": "1,1,1",
                        "time_steps_max": 1, "snapshot_interval": 1, "snapshot_precision": "double"},
          every((32, 64, 128), solvers=("acm",)), every((32, 64), methods=("fast",), solvers=("acm",)),
          (Measure("volume", lambda run: float(run.bodies.volume[0, 0]), {m: 5e-5 for m in ("fast", "classic")},
                   "the reference has five digits", 100.74, True),
-          Measure("surface", area, {}, "marching cubes of exact cell fractions: of a sphere too .3 % more at 24 cells per radius, "
-                  "and no less on finer grids", 140.33, True),
+          Measure("surface", area, {}, "marching cubes of exact cell fractions overestimate a surface, that of a sphere by .3 % at 24 cells "
+                  "per radius, and by no less on finer grids", 140.33, True),
           Measure("thickness in the middle", middle_thickness, {m: lambda n: .02 * (64 / n)**2 for m in ("fast", "classic")},
-                  "mean over the cells beside the axis: .32 h^2 = 1.04 % at 64 cells, twice", .829, True),
+                  "twice the difference between the axis and the cells beside it, .32 h^2, which is 1.04 % at 64 cells", .829, True),
           Measure("largest thickness", lambda run: float(thickness(run)[1].max()),
-                  {m: lambda n: .02 * (64 / n)**2 for m in ("fast", "classic")}, "less: the rim's top is flatter", 2.625, True)),
+                  {m: lambda n: .02 * (64 / n)**2 for m in ("fast", "classic")}, "as in the middle, which is more curved", 2.625, True)),
          thickness_line, ("r", "thickness")),
 )

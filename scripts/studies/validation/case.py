@@ -1,4 +1,4 @@
-"""What a case of the validation is: entries of data; how they are run and judged is in runner.py and report.py."""
+"""The data of a case of the validation; runner.py runs cases, and report.py judges them."""
 import dataclasses
 import pathlib
 from typing import Callable, Optional
@@ -45,8 +45,8 @@ class Measure:
 class Case:
     """options: function of a key, and of a function that gives the directory of an earlier key, to {option: value}.
     start: function of a key to the {dataset: array} of its -initial_state (docs/outputs.md), for starts that options cannot say.
-    curve: function of a run, or of all runs of a setting, {key: run}, if `whole_curve`, to ((x, y), (x, y) of the reference
-    or None) for the plot, with the labels of its axes."""
+    curve: function of a run, or of all runs of a setting, {key: run}, if `whole_curve`, to ((x, y), reference) for the plot, with
+    the labels of its axes, and `scales`, what matplotlib sets of these. The reference: (x, y), (x, y, errors of y) or None."""
     name: str
     title: str
     file: str
@@ -60,6 +60,7 @@ class Case:
     quick_options: dict = dataclasses.field(default_factory=dict)
     start: Optional[Callable] = None
     whole_curve: bool = False
+    scales: dict = dataclasses.field(default_factory=dict)
 
 
 def every(keys, classic=None, methods=("fast", "classic"), solvers=("acm", "smac"), **options):

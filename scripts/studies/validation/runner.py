@@ -1,5 +1,6 @@
 """Runs the program for the cases. A finished run is kept, under a key of its options, its file and the program;
 one that was killed goes on from its last checkpoint."""
+import collections
 import hashlib
 import json
 import os
@@ -7,6 +8,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import threading
 
 import h5py
 import program_environment  # noqa: F401
@@ -23,6 +25,7 @@ class Runner:
     def __init__(self, program, work):
         self.program, self.work = program, work
         self.version = hashlib.sha256(program.read_bytes()).hexdigest()
+        self.busy = collections.defaultdict(threading.Lock)  # of a directory: cases may share a run
         self.environment = {name: value for name, value in os.environ.items() if name != "PETSC_OPTIONS"}
 
     def command(self, case, setting, key, folder, more):
@@ -77,5 +80,6 @@ class Runner:
         runs, directories = {}, {}
         for key in setting.keys:
             words, directories[key] = self.command(case, setting, key, directories.__getitem__, more)
-            runs[key] = self.run(words, directories[key])
+            with self.busy[directories[key]]:
+                runs[key] = self.run(words, directories[key])
         return runs

@@ -93,7 +93,8 @@ def viscous_wall(run):
 
 def viscous_line(run):
     _, y, u, _ = profile_times(run.profile["y"])
-    return (y, u[-1]), (y, viscous_layers(y, surface(run)))
+    fine = numpy.linspace(0, 1, 201)
+    return (y, u[-1]), (fine, viscous_layers(fine, surface(run)))
 
 
 # S4
@@ -135,21 +136,22 @@ def wave_line(a, b):
         t, s, u, v = profile_times(run.profile[b])
         f = u if a == "x" else v
         found = [2 * f_t @ numpy.sin(2 * math.pi * s) / len(s) for f_t in f]
-        return (t, found), (t, exact.shear_wave(t, 1.5))
+        fine = numpy.linspace(0, t[-1], 101)
+        return (t, found), (fine, exact.shear_wave(fine, 1.5))
     return line
 
 
 def wave(a, b, mean=0.0, quick=False):
     what = f"u_{a} along {b}" + (f", carried at {mean}" if mean else "")
     least = {"fast": lambda n: .005 * (64 / n)**2, "classic": lambda n: .01 * (64 / n)**2}
-    second = "second order: frequency (k h)^2/24, at t = 1 .25 % at 64 cells, twice; explicit Euler (dt ~ h^2) as much again"
+    second = "second order: twice the error of the frequency, (k h)^2/24, which amounts to .25 % at t = 1 with 64 cells; explicit Euler with dt ~ h^2: as much again"
     def own_line(run):
         u = wave_component(run, a, b)
         s = (numpy.arange(len(u)) + 0.5) / len(u)
         return (s, u), (s, exact.shear_wave(1, 1.5) * numpy.sin(2 * math.pi * (s - mean)))
     return Case("S4", f"Plane shear wave, {what}", "shear_wave", wave_setup(a, b, mean),
                 every((32, 64), solvers=("acm",)), every((32, 64), methods=("fast",), solvers=("acm",)) if quick else (),
-                (Measure(f"{what}: rms error at t = 1, of u(0)", wave_error(a, b, mean), least, second, order={"fast": 1.9}),
+                (Measure(f"{what}: rms error at t = 1, relative to u(0)", wave_error(a, b, mean), least, second, order={"fast": 1.9}),
                  Measure(f"{what}: amplitude at t = 1", wave_amplitude(a, b), least, second, 1.23141718, True)),
                 wave_line(a, b) if (a, b, mean) == ("x", "y", 0) else own_line,
                 ("t" if (a, b, mean) == ("x", "y", 0) else b, f"u_{a}"))
@@ -204,13 +206,13 @@ def marked_line(run):
 
 
 SECOND_LAYER = {"fast": lambda n: 2 * (2 / n)**2, "classic": lambda n: 2 / n}
-WHY_LAYER = ("fast: half a cell at both walls of the parabola, (h/L_s)^2, twice; classic: first order in the width of the "
+WHY_LAYER = ("fast: second order, 2 (h/L_s)^2, L_s the thickness of the solid layer; classic: first order in the width of the "
              "interface, h/L_s")
 # classic, steady: B_xy on the edge of the surface rests only where du/dy = 0, so the first cell of fluid rests, at h/2
 # above the surface. What the parabola should have there, 4 (h/2) (L_f - h/2)/L_f^2 of its maximum, is the error.
 FIRST_CELL = {"fast": SECOND_LAYER["fast"], "classic": lambda n: 1.01 * (4 / n) * (1 - 1 / n)}
-WHY_FIRST_CELL = ("fast: half a cell at both walls of the parabola, (h/L_s)^2, twice; classic: the first cell of fluid rests, "
-                  "2 h/L_f (1 - h/(2 L_f)), and a hundredth of it")
+WHY_FIRST_CELL = ("fast: second order, 2 (h/L_s)^2, L_s the thickness of the solid layer; classic: 1.01 times the error that a first cell of "
+                  "fluid at rest causes, 2 h/L_f (1 - h/(2 L_f)), L_f the thickness of the fluid layer")
 CASES = (
     Case("S1", "Fluid over a solid layer, oscillating wall", "sheared_layers",
          lambda n, _: {**column(n), "time_step": 0, "snapshot_interval": 0.5, **WHOLE},
@@ -218,61 +220,61 @@ CASES = (
          (Measure("|u| at the interface", interface_speed, SECOND_LAYER, WHY_LAYER, .43700328, True),
           Measure("|B_xy| on the wall", shear_at(0), SECOND_LAYER, WHY_LAYER, .29522648, True),
           Measure("|B_xy| at the interface", shear_at(0.5), SECOND_LAYER, WHY_LAYER, .24588593, True,
-                  misses={"classic": (.5, "the edge takes the shear rate of both sides, 47 % on any grid")}),
-          Measure("rms error of u(y, t) over a period, of the wall's", layers_error, SECOND_LAYER, WHY_LAYER,
+                  misses={"classic": (.5, "the edge has the mean shear rate of solid and fluid, so that the error is 47 % on any grid")}),
+          Measure("rms error of u(y, t) over a period, relative to the wall speed", layers_error, SECOND_LAYER, WHY_LAYER,
                   order={"fast": 1.9})),
          layers_line, ("y", "u at t = 26")),
     Case("S3", "Channel flow over a solid layer at rest", "sheared_layers",
-         lambda n, _: {**column(n), "time_step": 0, "time_end": 30, "wall_ymax_velocity": "0,0,0",
-                       "wall_ymax_frequency": 0, "wall_ymax_phase": 0, "body_force": "0.5,0,0", "fluid_viscosity": 0.1,
+         lambda n, _: {**column(n), "time_step": 0, "time_end": 30, "boundary_ymax_velocity": "0,0,0",
+                       "boundary_ymax_angular_frequency": 0, "boundary_ymax_phase": 0, "body_force": "0.5,0,0", "fluid_viscosity": 0.1,
                        "layer_shear_modulus": 1, "snapshot_interval": 30, "profile_interval": 0, **WHOLE},
          every((32, 64)), every((16, 32), methods=("fast",), solvers=("acm",)),
-         (Measure("largest error of u, of its maximum", resting_error, FIRST_CELL, WHY_FIRST_CELL, order={"fast": 1.9}),
+         (Measure("largest error of u, relative to its maximum", resting_error, FIRST_CELL, WHY_FIRST_CELL, order={"fast": 1.9}),
           Measure("B_xy on the wall", resting_shear(0), SECOND_LAYER, WHY_LAYER, 0.375, True),
           Measure("B_xy at the interface", resting_shear(0.5), SECOND_LAYER, WHY_LAYER, 0.125, True,
-                  misses={"classic": (1.0625, "twice the exact one, and first order, 4/n at n = 64")})),
+                  misses={"classic": (1.0625, "the value is twice the exact one, apart from an error of first order, 4/n")})),
          resting_line, ("y", "u at t = 30")),
-    Case("V1", "Layers of viscosity 1 and 5, the surface .3 h off a face", "viscous_layers",
+    Case("V1", "Layers of viscosity 1 and 5, the surface .3 h away from a face", "viscous_layers",
          lambda n, _: {**column(n), "layer_interval": f"0,{0.5 + 0.3 / n}"},
          every((32, 64), classic=(16, 32)), every((16,), solvers=("smac",)),
-         (Measure("largest error of u, of the wall's", viscous_error, {m: lambda n: 0.21 / n for m in ("fast", "classic")},
-                  "the value in the cell of the kink: .15 h (T - T/5) = .2 h; .01 h for T, which changes with h"),
+         (Measure("largest error of u, relative to the wall speed", viscous_error, {m: lambda n: 0.21 / n for m in ("fast", "classic")},
+                  "error of u in the cell with the kink, .15 h (T - T/5) = .2 h, and .01 h because the stress T changes with the position of the surface"),
           Measure("power of the wall over T U", viscous_rate("wall_power"), {"fast": 1e-5, "classic": 1e-5},
-                  "exact but for what is left of the start: resistances add up, wherever the surface lies", 1, True),
+                  "exact for any position of the surface, apart from the rest of the transient", 1, True),
           Measure("shear stress on the viscous wall over T", viscous_wall, {"fast": 1e-5, "classic": 1e-5}, "exact", 1, True),
           Measure("dissipation over T U", viscous_rate("viscous_dissipation"), {"fast": 1e-5, "classic": 1e-5},
-                  "exact, by parts", 1, True)),
+                  "exact, by summation by parts", 1, True)),
          viscous_line, ("y", "u at t = 2")),
     wave("x", "y", quick=True), wave("y", "x"), wave("z", "x"), wave("x", "z", quick=True), wave("y", "z"),
     wave("x", "y", mean=0.5, quick=True),
-    Case("S5", "Strain where vortices stretch and turn", "shear_wave",
+    Case("S5", "Strain at a stagnation point between vortices", "shear_wave",
          lambda n, _: {**square(n), "fluid_viscosity": 0.01, "initial_velocity": "taylor_green",
                        "initial_velocity_amplitude": 1, "gel_shear_modulus": PASSIVE, "time_end": 0.1, "snapshot_interval": 0.1,
                        "profile_interval": 0, **WHOLE},
          every((33, 65), solvers=("acm",)), every((33, 65), methods=("fast",), solvers=("acm",)),
          (Measure("B_xx in the stagnation point at t = .1", stagnation,
                   {"fast": lambda n: 9.4e-4 * (65 / n)**2, "classic": lambda n: 8.4e-3 + 9.4e-4 * (65 / n)**2},
-                  "strain rate to (k h)^2/24, ln B_xx = 1.2: .047 % at 65^2, twice; Euler (2 k)^2 t dt/2, dt = .00106, more",
+                  "twice the error of the strain rate, (k h)^2/24, times ln B_xx = 1.2: .047 % at 65^2; Euler adds (2 k)^2 t dt/2 with dt = .00106",
                   stagnation_exact(0.1), True, order={"fast": 1.9}),),
          stagnation_line, ("x", "B_xx on y = 1/2")),
-    Case("S5", "A vortex' centre only turns", "shear_wave",
+    Case("S5", "Rotation in the centre of a vortex", "shear_wave",
          lambda n, _: {**square(n), "fluid_viscosity": 0.01, "initial_velocity": "taylor_green",
                        "initial_velocity_amplitude": 1, "gel_shear_modulus": PASSIVE, "time_end": 0.1, "snapshot_interval": 0.1,
                        "profile_interval": 0, **WHOLE},
          every((32, 64), solvers=("acm",)), every((32, 64), methods=("fast",), solvers=("acm",)),
-         (Measure("largest |B - I| in the vortex' centre at t = .1", centre_rotation,
+         (Measure("largest |B - I| in the centre of the vortex at t = .1", centre_rotation,
                   {m: lambda n: 2 * ((2 * math.pi)**3 * 0.1 / (4 * n * n))**2 for m in ("fast", "classic")},
-                  "mean of four cells: the shear g = k^3 h^2 t/4 there cancels, g^2 is left, twice", order={"fast": 3.5}),),
+                  "twice g^2: in the mean of four cells the shear g = k^3 h^2 t/4 cancels, and g^2 remains", order={"fast": 3.5}),),
          lambda run: ((run.centres(0), run.snapshots[-1]["left_cauchy_green_xx"][0, run.cells[1] // 4]),
                       ([0.25], [1])), ("x", "B_xx on y = 1/4")),
     Case("S5", "A marked disc of fluid in simple shear", "disc_in_shear",
-         lambda n, _: {**square(n, 8), "wall_ymin_velocity": "-0.2,0,0", "wall_ymax_velocity": "0.2,0,0",
+         lambda n, _: {**square(n, 8), "boundary_ymin_velocity": "-0.2,0,0", "boundary_ymax_velocity": "0.2,0,0",
                        "disc_shear_modulus": PASSIVE, "time_end": 20, "snapshot_interval": 20, **WHOLE},
          every((64, 128), solvers=("acm",)), every((64,), methods=("fast",), solvers=("acm",)),
          (Measure("Taylor deformation after a shear of 1", marked_disc, {"fast": lambda n: .01 * (128 / n)},
-                  "asked for: 1 % at 16 cells per radius", exact.sheared_circle(1), True),
+                  "goal: 1 % at 16 cells per radius", exact.sheared_circle(1), True),
           Measure("largest error of B in the middle", marked_strain,
                   {"fast": 1e-12, "classic": lambda n: 0.02 * (8 / n)**2},
-                  "Couette flow is linear and B quadratic in time: Heun to round-off; Euler rate dt, dt = h^2/5, twice")),
+                  "Couette flow is linear in space and B quadratic in time, so that Heun's method is exact to round-off; Euler: twice the shear rate times dt, dt = h^2/5")),
          marked_line, ("t", "Taylor deformation")),
 )

@@ -75,15 +75,15 @@ def layers(title, grid, line, error, start, least, full, quick, kept={}):
                               "series_interval": end, "snapshot_interval": end, "snapshot_fields": "velocity",
                               "snapshot_precision": "double"},
                 every(full, **FAST), every(quick, **FAST),
-                (Measure(f"{title}: rms error of u after half a period, of the largest at the start", error, {},
-                         "the order is judged", order={"fast": least}, order_misses=kept),),
+                (Measure(f"{title}: rms error of u after half a period, relative to the largest initial u", error, {},
+                         "reported: the order is judged", order={"fast": least}, order_misses=kept),),
                 line, ("x or y", f"u, {title}"), start=start)
 
 
 def turned(what, mean):
     return layers(f"at 45 degrees, {what}", lambda n: {"grid_cells": "{},{},1".format(*layer_cells(n)), "grid_length": "1,1,1"},
                   layers_line(mean), layers_error(mean), layer_start(mean), 1.6, (32, 64, 128), (32, 64),
-                  {"fast": (-.1, "less than half a per cent at 32 and 64; what is left is first order: docs/method.md, section 7")})
+                  {"fast": (-.1, "the remaining error at the surface is of first order (docs/method.md, section 7)")})
 
 
 # The same layers along the cells, surfaces on faces: what the program has of second order without cut cells.
@@ -131,8 +131,8 @@ def tube(modulus):
                               "profile_interval": 0, "species": "vessel", "vessel_shape": "tube", "vessel_axis": "x",
                               "vessel_radius": RADIUS, "vessel_shear_modulus": modulus},
                 every((20, 40), **FAST), every((20,), **FAST) if modulus > 1 else (),
-                (Measure(f"G = {modulus}: flow rate, of Poiseuille's", flow_rate, {"fast": lambda n: .03 * (20 / n)**2},
-                         "asked for: 3 % at 8 cells per radius, second order", 1, True),),
+                (Measure(f"G = {modulus}: flow rate relative to Poiseuille's", flow_rate, {"fast": lambda n: .03 * (20 / n)**2},
+                         "goal: 3 % at 8 cells per radius, second order", 1, True),),
                 tube_line, ("y", f"u, G = {modulus}"))
 
 

@@ -1,4 +1,5 @@
-// The superaccumulator against hand values and against Shewchuk's exact expansions; lane sums; blocks of a row.
+// The superaccumulator is compared with hand-written values and with Shewchuk's exact expansions; lane sums; blocks of
+// a row.
 #include "base/exact_sum.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,8 @@ std::uint64_t bits(double value) {
   return word;
 }
 
-// Correctly rounded sum by non-overlapping partial sums (Shewchuk 1997, as in Python's math.fsum); no overflow.
+// Returns the correctly rounded sum by non-overlapping partial sums (Shewchuk 1997, as in Python's math.fsum), for
+// terms that do not overflow.
 double shewchuk(const std::vector<double> &terms) {
   std::vector<double> parts;
   for (double x : terms) {
@@ -49,7 +51,7 @@ double shewchuk(const std::vector<double> &terms) {
     high = x + y;
     low = y - (high - x);
   }
-  // Half-way cases look at the sign of the next part.
+  // A tie is broken by the sign of the next partial sum.
   if (!parts.empty() && ((low < 0 && parts.back() < 0) || (low > 0 && parts.back() > 0))) {
     const double twice = 2 * low, next = high + twice;
     if (twice == next - high) high = next;
@@ -64,7 +66,7 @@ TEST(Superaccumulator, HandValues) {
   EXPECT_EQ(exact({1, 1e100, 1, -1e100}), 2);
   EXPECT_EQ(exact({-1e300, -1, 1e300}), -1);
   EXPECT_EQ(exact({1e300, smallest, -1e300}), smallest);
-  EXPECT_EQ(exact({.1, .2, -.3}), 0x1p-55);  // 0.1 + 0.2 - 0.3 of the nearest doubles
+  EXPECT_EQ(exact({.1, .2, -.3}), 0x1p-55);  // of the doubles nearest to 0.1, 0.2 and 0.3
   EXPECT_EQ(exact({-2.5}), -2.5);
   EXPECT_EQ(exact({-1, 0x1p-60}), -1);
   EXPECT_EQ(exact({-1, 0x1p-54}), -1);              // half-way: to even
@@ -99,7 +101,7 @@ TEST(Superaccumulator, NonFiniteGivesNan) {
   EXPECT_TRUE(std::isnan(exact({-Limits::quiet_NaN()})));
 }
 
-// A tie, and a hair on either side of it, at every parity and far apart.
+// Ties, and values slightly to either side of a tie, for even and odd numbers and distant exponents.
 TEST(Superaccumulator, RoundsTiesToEven) {
   std::mt19937_64 random(5);
   for (int n = 0; n < 4000; ++n) {
@@ -140,11 +142,11 @@ TEST(Superaccumulator, RoundsThousandsOfRandomSetsCorrectlyInAnyOrder) {
   EXPECT_EQ(wrong, 0);
   EXPECT_EQ(order_dependent, 0);
   EXPECT_GT(negative, 1000);
-  EXPECT_GT(naive_is_wrong, 1000);  // the sets are hard enough
+  EXPECT_GT(naive_is_wrong, 1000);  // the sets are difficult enough for a naive sum
 }
 
-// The carries of many additions: 2^22 terms of 53 bits and a total known exactly.
-// Values whose exponents differ by up to `spread`; of one sign the sums of their parts are largest.
+// Adding several values at once gives their exact sum, for exponents that differ by up to `spread`. With values of one
+// sign the sums of the parts are largest.
 TEST(Superaccumulator, SeveralAtOnceAreTheirExactSum) {
   std::mt19937_64 random(11);
   const auto between = [&](int low, int high) { return low + int(random() % std::uint64_t(high - low + 1)); };
@@ -152,7 +154,8 @@ TEST(Superaccumulator, SeveralAtOnceAreTheirExactSum) {
     for (const bool both_signs : {false, true})
       for (const int top : {0, 60, -400, 850, 1020, -850, -1000})
         for (int round = 0; round < 20; ++round) {
-          std::vector<double> values(round < 10 ? Superaccumulator::several : between(1, Superaccumulator::several));
+          std::vector<double> values(round < 10 ? Superaccumulator::buffer_size
+                                                : between(1, Superaccumulator::buffer_size));
           for (double &v : values) {
             const double mantissa = 2 - std::ldexp(double(random() % (round % 2 ? 1ull << 52 : 4)), -52);
             v = std::ldexp(mantissa, std::max(top - between(0, spread), -1073)) * (both_signs && random() % 2 ? -1 : 1);
@@ -161,7 +164,7 @@ TEST(Superaccumulator, SeveralAtOnceAreTheirExactSum) {
           Superaccumulator at_once, one_by_one;
           at_once.add(values.data(), int(values.size()));
           for (const double v : values) one_by_one.add(v);
-          // What rounding hides shows when the leading part is taken away again.
+          // Subtracting the leading part reveals errors that rounding would hide.
           for (int part = 0; part < 4; ++part) {
             const double sum = one_by_one.value();
             ASSERT_EQ(bits(at_once.value()), bits(sum)) << spread << ' ' << top << ' ' << values.size() << ' ' << part;
@@ -178,6 +181,7 @@ TEST(Superaccumulator, SeveralAtOnceAreTheirExactSum) {
   }
 }
 
+// Carries of many additions: 2^22 terms of 53 bits with a known total.
 TEST(Superaccumulator, ManyAdditions) {
   const double term = 0x1.fffffffffffffp+10;
   Superaccumulator up, down;
@@ -189,7 +193,7 @@ TEST(Superaccumulator, ManyAdditions) {
   EXPECT_EQ(down.value(), -std::ldexp(term, 22));
 }
 
-// Its definition: element i goes into lane i mod 8 in ascending order, then a fixed tree.
+// Definition of lane_sum(): element i is added to lane i mod 8 in ascending order, then follows a fixed tree.
 double defined_lane_sum(const double *values, int n, std::int64_t first) {
   double lane[8] = {};
   for (int i = 0; i < n; ++i) lane[(first + i) % 8] += values[i];
@@ -209,12 +213,12 @@ TEST(LaneSum, IsItsDefinitionAtAnyOffsetAndLength) {
   int another_order = 0;
   for (int first = 0; first < 17; ++first)
     for (int n = 0; n <= 256; ++n)
-      for (const int shift : {0, 3}) {  // memory alignment must not matter
+      for (const int shift : {0, 3}) {  // the memory alignment must not matter
         const double *values = row.data() + first + shift;
         EXPECT_EQ(bits(lane_sum(values, n, first)), bits(defined_lane_sum(values, n, first)));
         another_order += std::accumulate(values, values + n, 0.0) != lane_sum(values, n, first);
       }
-  EXPECT_GT(another_order, 1000);  // the rows tell one order from another
+  EXPECT_GT(another_order, 1000);  // the rows distinguish the order of summation
 }
 
 TEST(ExactSums, SumsRowsInBlocksOfTheAbsoluteIndex) {

@@ -1,4 +1,4 @@
-// One grammar for texts of numbers: what is read, and the line that says what is wrong.
+// The grammar for texts of numbers: accepted input, and error messages of one line.
 #include "base/number_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -53,13 +53,13 @@ TEST(NumberRows, OneLineSaysFileLineAndWhatIsExpected) {
   EXPECT_EQ(wrong_with(std::string("\xFF\xFE\x30\0,\0", 6)), "t.csv line 1: \"??0?\" is not a number" + end);
 }
 
-// A decimal comma would give more numbers, and a number with its unit be a header.
+// A decimal comma would give additional numbers, and a number with a unit might be taken for a header.
 TEST(NumberRows, NoNumberIsTakenForAnother) {
   EXPECT_NE(wrong_with("1,5;2,5;3,5\n", list).find("\"1,5\" is not a number"), std::string::npos);
   EXPECT_NE(wrong_with("1,5 2,5 3,5\n", list).find("\"5 2\" is not a number"), std::string::npos);
   EXPECT_NE(wrong_with("6um 5um 5um\n1 2 3\n", list).find("line 1: \"6um\""), std::string::npos);
   EXPECT_NE(wrong_with("3\n1 2 3\n4 5 6\n", list).find("line 1: says that 3 rows follow, but 2 do"), std::string::npos);
-  EXPECT_NE(wrong_with("1.5\n1 2 3\n", list).find("line 1: \"1.5\" is no number of rows"), std::string::npos);
+  EXPECT_NE(wrong_with("1.5\n1 2 3\n", list).find("line 1: \"1.5\" is not a number of rows"), std::string::npos);
   EXPECT_NE(wrong_with("1 2 3\n2\n", list).find("line 2: a row has 1 number;"), std::string::npos);
 }
 
@@ -74,7 +74,7 @@ TEST(NumberRows, ACommentLineNamesANumber) {
     EXPECT_EQ(read(std::string(line) + "\n0,1\n", &period), "") << line;
     EXPECT_EQ(period, 0.8) << line;
     EXPECT_EQ(read(std::string("0,1\n") + line, &period), "") << line;
-    EXPECT_EQ(wrong_with(std::string(line) + "\n0,1\n"), "") << line;  // of no meaning in other texts
+    EXPECT_EQ(wrong_with(std::string(line) + "\n0,1\n"), "") << line;  // without a meaning in other texts
   }
   double period = 0;
   EXPECT_EQ(read("# periodic\n# the period is 3\n0,1 # period 4\n", &period), "");
@@ -82,8 +82,7 @@ TEST(NumberRows, ACommentLineNamesANumber) {
   for (const char *wrong :
        {"# period", "# period = 0.8", "# period 0.8 s", "# period -1", "# period inf", "# period 0,8"})
     EXPECT_NE(read(std::string(wrong) + "\n0,1\n", &period).find("t.csv line 1: \"period"), std::string::npos) << wrong;
-  EXPECT_EQ(
-      read("# period 1\n0,1\n# period 1\n", &period),
-      "t.csv line 3: \"period 1\" comes a second time; accepted: one line # period T with a number T > 0, or other "
-      "comments");
+  EXPECT_EQ(read("# period 1\n0,1\n# period 1\n", &period),
+            "t.csv line 3: \"period 1\" is repeated; accepted: one line # period T with a number T > 0, or other "
+            "comments");
 }

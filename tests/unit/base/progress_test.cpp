@@ -1,4 +1,4 @@
-// The progress line: what it says, and how seldom.
+// The progress line: its content, and how often it is printed.
 #include "base/progress.hpp"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(Progress, AFewLinesInALog) {
   EXPECT_EQ(lines(silent), 0);
 }
 
-// Six steps that double, then equal ones of a second: what is left is told when it is right, and not before.
+// Short first steps, then equal steps of one second: the remaining time is printed as soon as it is right, not before.
 TEST(Progress, WhatIsLeftIsToldWhenItMeansSomething) {
   ProgressOutput out(Progress::Style::log, {0, 1000, 0, -1, 1});
   double time = 0;
@@ -75,7 +75,7 @@ TEST(Progress, WhatIsLeftIsToldWhenItMeansSomething) {
   }
 }
 
-// A rate that falls to a tenth: half of the run later the estimate knows.
+// The rate falls to a tenth; the estimate is right half of the run later.
 TEST(Progress, WhatIsLeftFollowsTheLatterHalf) {
   ProgressOutput out(Progress::Style::terminal, {0, 1000, 0, -1, 1});
   double wall = 0;

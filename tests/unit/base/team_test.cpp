@@ -1,4 +1,4 @@
-// The threads of a rank: every thread does its part of every region, however it waits.
+// The threads of a rank: every thread takes part in every region, with either way of waiting.
 #include "base/team.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(Both, ThreadTeamTest, testing::Values(Waiting::spin, Waiting::sleep));
 
-// Parts of a region are written by its threads alone and read after it by the first.
+// The parts of a region are written by its threads alone and read afterwards by the main thread.
 TEST_P(ThreadTeamTest, EveryMemberDoesItsPartOnce) {
   for (const int size : {1, 2, 5}) {
     team.resize(size);
@@ -27,7 +27,7 @@ TEST_P(ThreadTeamTest, EveryMemberDoesItsPartOnce) {
     std::vector<std::thread::id> by(size);
     std::vector<int> wanted(size, 0);
     for (int region = 0; region < 500; ++region) {
-      const int members = 1 + region % size;  // the others are still on their way when the next region begins
+      const int members = 1 + region % size;  // other threads may still be finishing when the next region begins
       team.run(members, [&](int thread) {
         ++done[thread];
         if (region < size) by[thread] = std::this_thread::get_id();
@@ -42,7 +42,7 @@ TEST_P(ThreadTeamTest, EveryMemberDoesItsPartOnce) {
   }
 }
 
-// A thread that has fallen asleep long ago wakes for its part.
+// A thread that has been asleep for a long time wakes up for its part.
 TEST_P(ThreadTeamTest, SleepersWake) {
   team.resize(3);
   std::atomic<int> done{0};

@@ -108,10 +108,10 @@ TEST(Overlap, BodiesAndTheWallOfATube) {
   EXPECT_EQ(find(box + tube + sphere("a", 4, "2,25,16")).bodies, 2);
   EXPECT_EQ(find(box + tube + sphere("a", 4, "2,31,16")).bodies, 2);  // in the wall altogether
   // Walls are joined by overlap.
-  EXPECT_EQ(find(box + tube + sphere("a", 4, "2,25,16") + "-a_attached true").bodies, 0);
+  EXPECT_EQ(find(box + tube + sphere("a", 4, "2,25,16") + "-a_anchored true").bodies, 0);
   const std::string post = "-a_shape cylinder -a_axis y -a_radius 2 -a_shear_modulus 1 ";
   EXPECT_EQ(find(box + tube + post).bodies, 2);
-  EXPECT_EQ(find(box + tube + post + "-a_attached true").bodies, 0);
+  EXPECT_EQ(find(box + tube + post + "-a_anchored true").bodies, 0);
 }
 
 TEST(Overlap, ContactThatMerges) {

@@ -195,7 +195,7 @@ TEST(Seeding, PenetrationOfSpheresAndOfDiscsSideBySide) {
 }
 
 TEST(Seeding, BodiesKeepOffSidesThatVolumeCrosses) {
-  const std::string open = "-boundary_y wall -boundary_xmin inflow -inflow_xmin_velocity 1 -boundary_xmax outflow ";
+  const std::string open = "-boundary_y wall -boundary_xmin inflow -boundary_xmin_velocity 1 -boundary_xmax outflow ";
   const ParseResult result = parse_line(box + open + "-species rbc " + cells + "-rbc_hematocrit 0.25");
   ASSERT_EQ(result.error, "");
   double least[2][2] = {{42, 42}, {42, 42}};  // at x and y

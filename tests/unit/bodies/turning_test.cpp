@@ -30,8 +30,8 @@ TEST(TurningBodies, PlaceIsAFunctionOfTime) {
   ASSERT_EQ(bodies.add(body, {{body.centre, {10, 20, 30}}}, 1, &phase, &wrong), 0);
   ASSERT_TRUE(bodies.travel());
   const double time = 0.7, gone = (std::sin(2 * time + 0.5) - std::sin(0.5)) / 2;
-  ASSERT_EQ(bodies.place(0.3, 0.2), 0);
-  ASSERT_EQ(bodies.place(time, time), 0);
+  ASSERT_EQ(bodies.find_faces(0.3, 0.2), 0);
+  ASSERT_EQ(bodies.find_faces(time, time), 0);
   // The rotation, composed independently: v turned about w by Rodrigues' formula.
   const auto turn = [&](Real3 v) {
     const Real3 &w = body.motion.angular_velocity;

@@ -1,4 +1,4 @@
-// The measures of the flow that the time step depends on.
+// Measures of the flow that determine the time step.
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,8 @@ using namespace eulastic::test;
 
 namespace {
 
-// Segments are whole vectors: what of them does not evolve must not count, or bits would depend on what is skipped.
+// Segments consist of whole vectors. Points in them that do not evolve must not count, or the bits would depend on
+// which points are skipped.
 TEST(Extremes, TraceIsThatOfCentresThatEvolve) {
   Scene scene;
   GridSpec grid;

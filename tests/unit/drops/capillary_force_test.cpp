@@ -1,4 +1,5 @@
-// CapillaryForce: a drop in a box of its own has the force and the sums of the same drop on the grid, to the bit.
+// CapillaryForce: a drop in a box of its own has the force and the sums of the same drop on the grid, with the same
+// bits.
 #include "drops/capillary_force.hpp"
 #include "drops/surface_tension.hpp"
 #include "grid/occupied_rows.hpp"
@@ -25,14 +26,14 @@ struct Case {
   bool bounded;  // walls in y and, in 3-D, in z
   Real3 centre, axes;
   bool crosses_x = false;  // a row of the grid has two pieces of it, which are added up in another order
-  // The last two have no cut cells; a rod along y has no heights at its rims.
+  // The last two drops have no cut cells; a rod along y has no heights at its rims.
   enum Shape { smooth, stepped, rod };
   Shape shape = smooth;
 };
 
 void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
 
-// A discrete drop on the grid of one rank, with a velocity.
+// A discrete drop with a velocity on the grid of one rank.
 struct OnGrid : InterfaceScene {
   std::vector<Phase> phases{1};
   Int3 begin{}, end{1, 1, 1};  // of the cells with phi != 0; across periodic sides they go on
@@ -69,7 +70,7 @@ struct OnGrid : InterfaceScene {
       each_owned([&](int i, int j, int k) { velocity[d](i, j, k) = std::sin(1 + i + 1.7 * j + 2.9 * k + 5 * d); });
   }
 
-  // A box around the drop, as wide as `margin` says but at walls.
+  // A box with `margin` cells around the drop, except at walls.
   Box box(int margin) const {
     Int3 first = begin, cells{1, 1, 1};
     for (int d = 0; d < domain.dimension(); ++d) {
@@ -83,7 +84,7 @@ struct OnGrid : InterfaceScene {
     }
     return Box(domain.domain_shape(), first, cells, CapillaryForce::phi_ghosts);
   }
-  // The cell of the grid that a cell of a box is.
+  // The cell of the grid that corresponds to a cell of a box.
   Int3 image(const Box &box, int i, int j, int k) const {
     const Int3 &first = box.layout().begin;
     return {box.image(0, first[0] + i), box.image(1, first[1] + j), box.image(2, first[2] + k)};
@@ -116,7 +117,7 @@ private:
   }
 };
 
-// What surface tension gives on a block.
+// Force and sums of surface tension on a block.
 struct Result {
   Field force, slope;
   double sum[CapillaryForce::sums] = {};
@@ -250,7 +251,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"flat_at_wall", {52, 40, 1}, true, {0.63, 0.9, 0}, {0.3, 0.2, 0}}),
     [](const auto &test) { return test.param.name; });
 
-// The force that the solver adds for a phase is that of CapillaryForce, less its mean.
+// The force that the solver adds for a phase is that of CapillaryForce less its mean.
 TEST(SurfaceTension, AddsTheForcesOfItsPhases) {
   OnGrid grid({"drop", {40, 32, 1}, false, {0.61, 0.47, 0}, {0.3, 0.2, 0}});
   const Domain &domain = grid.domain;

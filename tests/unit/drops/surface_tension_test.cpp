@@ -1,4 +1,4 @@
-// Heights and curvature of exact surfaces, the area of planes, and the force of surface tension.
+// Heights and curvatures of exact surfaces, the areas of planes, and the force of surface tension.
 #include "drops/surface_tension.hpp"
 #include "base/exact_sum.hpp"
 #include "kernels/height_curvature.hpp"
@@ -46,7 +46,7 @@ struct Seen {
   double mean() const { return sum / found; }
 };
 
-// Cells of the interior of the box, so that no column reaches beyond it.
+// Interior cells whose columns stay inside the box.
 template <int Dim>
 Seen curvatures(LevelScene &box, double expected, double length) {
   Seen seen;
@@ -100,7 +100,7 @@ TEST(HeightCurvature, OfCirclesAndSpheresIsOfSecondOrder) {
     const int cells = 28 << n;
     LevelScene box({cells, cells, cells}, {1, 1, 1}, ball({0.503, 0.497, 0.5}, 0.25, 3));
     round[n] = curvatures<3>(box, 8, 0.25);
-    EXPECT_LT(round[n].missed, (n == 0 ? 0.3 : 0.07) * round[n].found);  // where a cell is cut at its corner only
+    EXPECT_LT(round[n].missed, (n == 0 ? 0.3 : 0.07) * round[n].found);  // only where a cell is cut at its corner
   }
   std::printf(
       "  curvature times radius: largest error, circle of 10, 20, 40 cells %.4f %.4f %.4f; mean, sphere of 7, 14 "
@@ -146,7 +146,7 @@ TEST(HeightCurvature, MirroredIsTheSameToTheBit) {
   }
 }
 
-// A drop in a periodic box: energy, and a force that does no work on what is rigid.
+// A drop in a periodic box: its energy, and a force that does no work on a rigid motion.
 TEST(SurfaceTension, HasTheEnergyOfItsAreaAndNoNetForce) {
   for (const bool flat : {true, false}) {
     const int cells = 32;

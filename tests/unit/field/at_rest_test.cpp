@@ -1,4 +1,4 @@
-// Fields that rest away from bodies: memory follows what is written.
+// Fields with memory on demand: only pages that are written are allocated.
 #include "output/saved_state.hpp"
 #include "solver/looks.hpp"
 #include "support/scene.hpp"
@@ -11,7 +11,7 @@
 namespace eulastic {
 namespace {
 
-// Bytes of memory of this process that are its own.
+// Returns the bytes of private memory of this process.
 double own_memory() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
@@ -33,7 +33,7 @@ double sum(const Field &block) {
 constexpr double mega = 1 << 20;
 
 TEST(AtRest, OnesThenZerosGhostsIncluded) {
-  for (const int n : {5, 70}) {  // less than a page, more than the file of ones
+  for (const int n : {5, 70}) {  // less than a page; more than the file of ones
     Domain domain;
     ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(n)), 0);
     const std::ptrdiff_t size = domain.layout().size;
@@ -67,7 +67,7 @@ TEST(AtRest, ReadingAndCopyingTakeNoMemory) {
   copy.copy_from(block);
   EXPECT_LT(own_memory() - before, 0.1 * all);
   EXPECT_EQ(sum(copy), 2.0 * domain.layout().size + 2 * 128);
-  block[1](5, 64, 5) = 1;  // what is back at rest is so in the copy
+  block[1](5, 64, 5) = 1;  // a page that has its defaults again is not allocated in the copy
   copy.copy_from(block);
   EXPECT_EQ(copy[1](5, 64, 5), 1);
   EXPECT_EQ(copy[1](6, 64, 6), 3);
@@ -75,7 +75,7 @@ TEST(AtRest, ReadingAndCopyingTakeNoMemory) {
   EXPECT_EQ(sum(copy), sum(block));
 }
 
-// A small ball in a large box, with all that looks at phases: labels, ghosts, hash, phases at the time of the output.
+// A small ball in a large box, with labels, ghosts, hash, and phases at the time of the output.
 void expect_little_memory(MethodKind kind) {
   constexpr int n = 112;
   const SolverSpec spec{method_preset(kind), {}, {}};
@@ -93,7 +93,7 @@ void expect_little_memory(MethodKind kind) {
       }
   State &state = scene.solver.state();
   state.phases.push_back(std::move(phase));
-  ASSERT_EQ(scene.solver.prepare(), 0);  // allocates what all bodies share as well
+  ASSERT_EQ(scene.solver.prepare(), 0);  // also allocates data that all bodies share
   FlowExtremes extremes;
   ASSERT_EQ(scene.solver.measure(&extremes), 0);
   const double before = own_memory(), field = double(scene.domain.layout().size) * sizeof(double);

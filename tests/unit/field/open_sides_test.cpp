@@ -1,4 +1,4 @@
-// Sides that volume crosses: mirrored and rotated scenes, exact flows, and what leaves with a vortex.
+// Boundaries that fluid crosses: mirrored and rotated scenes, exact flows, and a vortex that leaves.
 #include "field/open_sides.hpp"
 #include "grid/domain.hpp"
 #include "support/scene.hpp"
@@ -22,7 +22,7 @@ struct Setting {
   PressureKind solver = PressureKind::acm;
   MethodKind method = MethodKind::fast;
 
-  // In along y, out along y and x, a closed side and planes of symmetry beside them.
+  // Inflow along y, outflow along y and x, beside a wall and planes of symmetry.
   Setting() {
     kind[0] = {SideKind::symmetry, SideKind::pressure};
     kind[1] = {SideKind::inflow, SideKind::outflow};
@@ -94,7 +94,7 @@ double mirror_difference(const Scene &a, const Scene &b, int m) {
   });
 }
 
-// Volume that comes in through all sides per time, and what comes in through one.
+// Returns the flow rate into the box through one boundary.
 double flow_rate(const Scene &scene, int d, bool high) {
   const Domain &domain = scene.domain;
   const ConstView v = scene.solver.state().velocity[d];
@@ -110,7 +110,7 @@ double flow_rate(const Scene &scene, int d, bool high) {
 
 }  // namespace
 
-// V-cycles over odd numbers of cells, transforms and sums along x are not their own mirror images.
+// V-cycles over odd numbers of cells, transforms and sums along x are not symmetric under reflection.
 TEST(OpenSides, MirroredSceneGivesTheMirroredResult) {
   for (const bool two_d : {false, true})
     for (const MethodKind method : {MethodKind::fast, MethodKind::classic}) {
@@ -179,7 +179,7 @@ TEST(OpenSides, AllPressureSolversAgreeAndVolumeBalances) {
   }
 }
 
-// A flow that is the same everywhere follows what comes in, and the pressure pushes it: p = -x du/dt.
+// A uniform flow follows the inflow, driven by the pressure p = -x du/dt.
 TEST(OpenSides, PlugFlowFollowsTheInflow) {
   Setting setting = flat(Setting());
   setting.kind = {};
@@ -246,7 +246,8 @@ TEST(OpenSides, PlaneFlowStartsBetweenTwoPressures) {
     }
 }
 
-// A smooth jet into a box that spreads, to a pressure side: what passes the middle and leaves is of second order.
+// A smooth jet into a wider box with a pressure boundary: the flow through the middle and the outflow are of second
+// order.
 TEST(OpenSides, ASpreadingJetIsOfSecondOrder) {
   double flux[4][2];
   for (int level = 0; level < 4; ++level) {
@@ -285,7 +286,7 @@ TEST(OpenSides, ASpreadingJetIsOfSecondOrder) {
   }
 }
 
-// A vortex in a stream, strong enough to turn the flow back on the side it leaves through.
+// A vortex in a stream, strong enough to cause backflow through the boundary where it leaves.
 TEST(OpenSides, AVortexLeavesAndNothingGrows) {
   for (const SideKind kind : {SideKind::outflow, SideKind::pressure}) {
     Setting setting;

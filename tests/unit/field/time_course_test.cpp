@@ -1,4 +1,4 @@
-// Tables over time between their rows, outside of them and beat by beat.
+// Tables over time: between their rows, outside of them, and with a period.
 #include "field/time_course.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(TimeCourse, IsLinearBetweenRowsAndConstantOutside) {
 
 TEST(TimeCourse, RepeatsWithItsPeriod) {
   TimeCourse course{0, 0, 0, {{1, 2}, {3, 6}}};
-  course.period = 4;  // back from 6 to 2 between t = 3 and t = 5
+  course.period = 4;  // from 6 back to 2 between t = 3 and t = 5
   EXPECT_DOUBLE_EQ(course.angular_frequency(), std::acos(-1) / 2);
   const double wanted[][3] = {{0, 4, -2}, {1, 2, 2}, {2, 4, 2}, {3, 6, -2}, {4, 4, -2}, {5, 2, 2}, {4002, 4, 2}};
   for (const auto &[time, value, rate] : wanted) {

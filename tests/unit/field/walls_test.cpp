@@ -33,7 +33,7 @@ void for_each_grid(const std::function<void(const Domain &)> &visit) {
     }
 }
 
-// All points up to `width` ghosts, and the layer more that a field on the high wall has behind it.
+// Visits all points up to `width` ghosts, and the additional layer behind a high wall.
 template <class Visit>
 void for_each_point(const Domain &domain, const Staggering &staggering, int width, const Visit &visit) {
   Int3 low{}, high{}, more{};
@@ -46,7 +46,8 @@ void for_each_point(const Domain &domain, const Staggering &staggering, int widt
   for (int k = low[2]; k < high[2] + more[2]; ++k)
     for (int j = low[1]; j < high[1] + more[1]; ++j)
       for (int i = low[0]; i < high[0] + more[0]; ++i)
-        if ((i == high[0]) + (j == high[1]) + (k == high[2]) <= 1) visit(Int3{i, j, k});  // no stencil has two
+        // no stencil reads behind two of them
+        if ((i == high[0]) + (j == high[1]) + (k == high[2]) <= 1) visit(Int3{i, j, k});
 }
 
 bool is_owned(const Domain &domain, const Int3 &p, const Staggering &staggering) {
@@ -55,10 +56,10 @@ bool is_owned(const Domain &domain, const Int3 &p, const Staggering &staggering)
   return true;
 }
 
-// Some value of field f at a point inside the box.
+// Returns some value of field f at a point inside the box.
 double inner(int f, const Int3 &p) { return std::sin(1 + f + 1.3 * p[0] + 2.7 * p[1] + 4.1 * p[2]); }
 
-// Poison everywhere, then the points the field has, then the exchange.
+// Poisons all values, sets the points of the field, then exchanges ghosts.
 void prepare(const Domain &domain, Field &block, const std::function<Staggering(int)> &staggering, int width) {
   for (int f = 0; f < block.count(); ++f) {
     block.fill(f, poison);
@@ -70,8 +71,8 @@ void prepare(const Domain &domain, Field &block, const std::function<Staggering(
   ASSERT_EQ(exchange.update_ghosts(block, width), 0);
 }
 
-// What a ghost must be: unfold the point direction by direction, the last reflection first. `sign` is -1 for velocity
-// and +1 for everything even.
+// Returns the value of a ghost: the point is unfolded direction by direction, in the reverse order of the reflections.
+// `sign` is -1 for the velocity and +1 for even fields.
 double unfolded(const Domain &domain, Int3 p, const Staggering &staggering, double sign, const std::vector<int> &order,
                 const std::function<double(int, int)> &twice_wall, const Point &inside) {
   for (auto d = order.rbegin(); d != order.rend(); ++d) {
@@ -160,7 +161,8 @@ TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
   });
 }
 
-// Behind a plane of symmetry is the mirror image: tangential velocity even, normal velocity and shear odd, 0 on it.
+// The mirror image lies behind a plane of symmetry: the tangential velocity is even, normal velocity and shear are odd
+// and 0 on the plane.
 TEST(SymmetryGhosts, AreTheMirrorImage) {
   Domain domain;
   ASSERT_EQ(domain.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
@@ -185,7 +187,7 @@ TEST(SymmetryGhosts, AreTheMirrorImage) {
       EXPECT_EQ(tensor[1](i, 4 + m, 0), 10 + even[m]);
       EXPECT_EQ(velocity[1](i, 5 + m, 0), normal[m]);
       EXPECT_EQ(tensor[2](i, 5 + m, 0), shear[m]);
-      EXPECT_EQ(velocity[0](i, -1 - m, 0), -(1 + m));  // the wall below is one still
+      EXPECT_EQ(velocity[0](i, -1 - m, 0), -(1 + m));  // the low boundary is still a wall
       EXPECT_EQ(tensor[2](i, -1 - m, 0), 22 + m);
     }
   for (int i = -3; i < 6; ++i) {
@@ -207,8 +209,8 @@ TEST(WallGhosts, TensorComponentsAreInTheirOrder) {
   EXPECT_EQ(flat[2].at, (Staggering{true, true, false}));
 }
 
-// Hand values: Couette flow between walls at -1 and 3 over four cells is linear through the ghosts; u_i is -0.5,
-// 0.5, 1.5, 2.5. The normal velocity y (4 - y) continues oddly, -5 at y = -1.
+// Hand-written values: Couette flow between walls with the velocities -1 and 3 over four cells is linear through the
+// ghosts; u_i is -0.5, 0.5, 1.5, 2.5. The normal velocity y (4 - y) continues oddly, -5 at y = -1.
 TEST(WallGhosts, CouetteStaysLinearThroughTheWalls) {
   Domain domain;
   ASSERT_EQ(domain.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
@@ -231,7 +233,7 @@ TEST(WallGhosts, CouetteStaysLinearThroughTheWalls) {
   }
 }
 
-// x -> y -> z -> x, of the walls and of the flow: the ghosts turn with them, corners included.
+// If walls and flow are rotated, x -> y -> z -> x, so are the ghosts, including corners.
 TEST(WallGhosts, RotatedScenesHaveRotatedGhosts) {
   for (int dimension = 2; dimension <= 3; ++dimension) {
     Int3 cells{4, 5, dimension == 3 ? 6 : 1}, turned_cells = cells;
@@ -289,12 +291,12 @@ TEST(WallGhosts, OfTheTensorOnlyWhereABodyIsNear) {
       at[d] = index;
       return tensor[f](at[0], at[1], at[2]);
     };
-    const int high = domain.domain_cells()[d] + 1;  // behind the wall wherever a component sits
+    const int high = domain.domain_cells()[d] + 1;  // behind the wall for any staggering
     Int3 away = body;
     away[(d + 1) % 3] = 22;
     for (int f = 0; f < 6; ++f) {
       EXPECT_EQ(ghost(f, body, -1), 1 + f) << d;
-      if (d == 0) continue;  // a row is one piece along x
+      if (d == 0) continue;  // rows are processed as one piece along x
       EXPECT_EQ(ghost(f, body, high), 0) << d;
       if (d == 2) continue;
       EXPECT_EQ(ghost(f, away, -1), 0) << d;

@@ -1,4 +1,4 @@
-// Work space is taken by name, for a scope.
+// The work space leases fields under a name, for a scope.
 #include "field/work_space.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ struct WorkSpaceTest : testing::Test {
     spec.cells = {8, 8, 1};
     ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
   }
-  // What take() says, without PETSc's print.
+  // Returns the error code of a lease, without PETSc's message.
   static PetscErrorCode quietly(WorkSpace &work, int count, WorkSpace::Lease *lease) {
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
     const PetscErrorCode error = work.take("more", count, lease);

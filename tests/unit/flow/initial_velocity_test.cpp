@@ -1,4 +1,4 @@
-// Initial flows: values against their formulas, and solenoidal to second order.
+// Initial velocities agree with their formulas, and are solenoidal to second order.
 #include "flow/initial_velocity.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ struct Flow {
   }
   double u(int c, int i, int j, int k) const { return velocity[c](i, j, k); }
 
-  // Largest |div v| over the cells, index N by periodicity or 0 on a wall, relative to the largest |v| / length.
+  // Returns the largest |div v| over the cells, relative to the largest |v| / length; points with index N follow from
+  // periodicity or are 0 on a wall.
   double divergence() const {
     const Int3 n = domain.domain_cells();
     double largest = 0, speed = 0;
@@ -65,7 +66,7 @@ TEST(InitialVelocity, TaylorGreen) {
   const Flow flow(box({8, 12, 1}, {2, 3, 1}), {InitialVelocity::taylor_green, 1.5, {0.5, -1, 0}});
   EXPECT_NEAR(flow.u(0, 3, 2, 0), 0.5 + 1.5 * std::sin(2 * pi * 3 / 8) * std::cos(2 * pi * 2.5 / 12), 1e-14);
   EXPECT_NEAR(flow.u(1, 3, 2, 0), -1 - 1.5 * 3 / 2 * std::cos(2 * pi * 3.5 / 8) * std::sin(2 * pi * 2 / 12), 1e-14);
-  // A square of square cells: solenoidal to round-off.
+  // Square cells in a square box: solenoidal to round-off.
   EXPECT_LT(Flow(box({16, 16, 1}, {1, 1, 1}), {InitialVelocity::taylor_green, 1, {1, 1, 0}}).divergence(), 1e-13);
   const InitialFlow solid{InitialVelocity::taylor_green_3d, 2, {}};
   EXPECT_LT(Flow(box({12, 12, 12}, {2, 2, 2}), solid).divergence(), 1e-13);

@@ -1,4 +1,5 @@
-// Carried velocities, the predictor's terms, divergence and correction: exact on polynomials, unequal spacings.
+// Averaged velocities, the terms of the predictor, divergence and correction: exact for polynomials with unequal
+// spacings.
 #include "kernels/momentum.hpp"
 #include "flow/correction.hpp"
 #include "flow/projection.hpp"
@@ -12,7 +13,7 @@ using namespace eulastic::test;
 
 namespace {
 
-// The mean of a component over its faces no further than half a cell from the point, in all directions.
+// Returns the mean of a component over its faces within half a cell of the point, in all directions.
 double mean_of_near_faces(const Domain &domain, ConstView q, int d, const Staggering &at, const Int3 &point) {
   double sum = 0;
   int count = 0;

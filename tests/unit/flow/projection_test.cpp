@@ -1,4 +1,4 @@
-// What the classic step does in fewer passes than its equations have: the same bits as one pass for each.
+// The classic step fuses several equations into one pass over memory; the bits are those of separate passes.
 #include "flow/projection.hpp"
 #include "flow/correction.hpp"
 #include "grid/blocks.hpp"
@@ -15,19 +15,19 @@ using namespace eulastic::test;
 
 namespace {
 
-struct Sides {
+struct BoundaryCase {
   bool flat;
-  int walls;  // bit d: direction d
+  int walls;  // bit d: direction d has walls
 };
 
-// A random flow with its ghosts; rows of more than one block in y.
+// A random flow with valid ghosts, and more than one block of rows in y.
 struct RandomFlow {
   Domain domain;
   std::unique_ptr<GhostExchange> exchange;
   BoxSides walls{};
   Field velocity, pressure;
 
-  explicit RandomFlow(const Sides &sides) {
+  explicit RandomFlow(const BoundaryCase &sides) {
     GridSpec spec = uneven_box(sides.flat, {11, block_rows + 5, 6});
     for (int d = 0; d < 3; ++d)
       if (sides.walls >> d & 1) spec.boundary[d] = Boundary::wall;
@@ -57,7 +57,7 @@ bool same_rows(const Domain &domain, const Field &a, const Field &b) {
   return same;
 }
 
-class Projection : public ::testing::TestWithParam<Sides> {};
+class Projection : public ::testing::TestWithParam<BoundaryCase> {};
 
 TEST_P(Projection, IncrementByFormulaHasTheBitsOfAStoredOne) {
   RandomFlow flow(GetParam()), other(GetParam());
@@ -83,8 +83,8 @@ TEST_P(Projection, IncrementByFormulaHasTheBitsOfAStoredOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, Projection,
-                         ::testing::Values(Sides{true, 0}, Sides{true, 1}, Sides{true, 2}, Sides{true, 3},
-                                           Sides{false, 0}, Sides{false, 1}, Sides{false, 2}, Sides{false, 4},
-                                           Sides{false, 7}));
+                         ::testing::Values(BoundaryCase{true, 0}, BoundaryCase{true, 1}, BoundaryCase{true, 2},
+                                           BoundaryCase{true, 3}, BoundaryCase{false, 0}, BoundaryCase{false, 1},
+                                           BoundaryCase{false, 2}, BoundaryCase{false, 4}, BoundaryCase{false, 7}));
 
 }  // namespace

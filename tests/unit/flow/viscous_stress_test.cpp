@@ -1,4 +1,4 @@
-// The stress of varying viscosity: its force on polynomials, its spectrum; the viscosity of mixed cells.
+// The stress with variable viscosity: its force on polynomials, its spectrum, and the viscosity of mixed cells.
 #include "flow/viscous_stress.hpp"
 #include "flow/limits.hpp"
 #include "support/polynomials.hpp"
@@ -85,7 +85,7 @@ TEST(ViscousStress, IsTheLaplacianOfSolenoidalFlowInUniformViscosity) {
   }
 }
 
-// The largest eigenvalue of the force, by powers of it.
+// Returns the largest eigenvalue of the force, by the power method.
 double stiffest(Flow &flow) {
   Random random(5);
   randomise(flow.domain, flow.velocity, random);
@@ -158,7 +158,7 @@ TEST(Viscosity, IsTheHarmonicMeanAtCentresAndOnEdges) {
     fluid.viscosity = 0.8;
     std::vector<Phase> phases(2);
     phases[0].material.viscosity = 4;
-    const double part[2][2] = {{0.25, 0.5}, {0.75, 0.75}};  // of cells with even and odd i
+    const double part[2][2] = {{0.25, 0.5}, {0.75, 0.75}};  // fractions in cells with even and odd i
     for (int p = 0; p < 2; ++p) {
       phases[p].fraction = Field(flow.domain, 1);
       EXPECT_EQ(phases[p].rows.find(flow.domain, phases[p].fraction[0]), 0);
@@ -171,7 +171,7 @@ TEST(Viscosity, IsTheHarmonicMeanAtCentresAndOnEdges) {
           for (int i = -1; i < n[0] + 1; ++i) phases[p].fraction[0](i, j, k) = part[odd(i)][p];
     for (Phase &phase : phases) EXPECT_EQ(phase.rows.find(flow.domain, phase.fraction[0]), 0);
     EXPECT_EQ(compute_viscosity(flow.domain, fluid, {}, phases, &flow.viscosity), 0);
-    // 1/nu: 2/.8 in the fluid and the second phase, 2/4 in the first, which shares overfull cells.
+    // 1/nu: 2/.8 in the fluid and the second phase, 2/4 in the first; fractions with a sum above 1 are normalised.
     const double even = 0.75 * 2.5 + 0.25 * 0.5, full = 0.5 * 2.5 + 0.5 * 0.5;
     for (int k = 0; k < n[2]; ++k)
       for (int j = -1; j < n[1] + 1; ++j)
@@ -185,8 +185,8 @@ TEST(Viscosity, IsTheHarmonicMeanAtCentresAndOnEdges) {
   }
 }
 
-// A surface in the middle of a layer of cells: strain along it is felt by what the arithmetic means have more than the
-// harmonic ones, shear across it by nothing.
+// A surface in the middle of a layer of cells: strain along it is resisted by the excess of the arithmetic over the
+// harmonic means, shear across it is not.
 TEST(Viscosity, CutCellsResistStrainAlongTheSurfaceAlone) {
   for (const bool flat : {false, true}) {
     Flow flow(flat);
@@ -203,7 +203,7 @@ TEST(Viscosity, CutCellsResistStrainAlongTheSurfaceAlone) {
     EXPECT_EQ(phases[0].rows.find(flow.domain, phases[0].fraction[0]), 0);
     EXPECT_EQ(compute_viscosity(flow.domain, fluid, {}, phases, &flow.viscosity), 0);
     const auto more = [&](double phi) { return thin + phi * (thick - thin) - 1 / ((1 - phi) / thin + phi / thick); };
-    const double beside = (more(0.25) + more(0.75)) / 2, here = more(0.5);  // edges across, and along, the surface
+    const double beside = (more(0.25) + more(0.75)) / 2, here = more(0.5);  // edges across and along the surface
     const double excess = flat ? (here + beside) / 2 : (3 * here + 2 * here + 4 * beside) / 9;
     const int along = viscosity_along_surface(dim), at = flow.domain.cells()[0] / 2;
     EXPECT_NEAR(flow.viscosity.fields[along](at, 2, 0), excess, 1e-14);

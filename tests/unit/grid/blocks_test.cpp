@@ -1,5 +1,5 @@
-// Stages that share a pass: which rows they do, and that none reads or overwrites what is not there yet or still
-// needed.
+// Stages that share a pass over memory: the rows that they process, and that no stage reads a value before it is
+// written or overwrites one that is still needed.
 #include "grid/blocks.hpp"
 #include "grid/domain.hpp"
 
@@ -11,8 +11,8 @@ using namespace eulastic;
 
 namespace {
 
-// Two fields of rows that hold the number of the stage that wrote them last. Before the first stage, which reads field
-// 0 and writes field 1: -1 everywhere in field 0, -2 in field 1.
+// Two fields of rows that hold the number of the stage that wrote them last. The first stage reads field 0 and writes
+// field 1; initially field 0 is -1 and field 1 is -2 everywhere.
 class Pass {
 public:
   Pass(const Domain &domain, int depth, int layers) : domain_(domain), sides_(domain), depth_(depth), layers_(layers) {
@@ -25,14 +25,14 @@ public:
     const StagePass pass(domain_, sides_, depth_, 1, layers_);
     pass.for_tasks([&](const StagePass::Task &task) {
       const auto rows = [&](int s, Segment row, int j_end) {
-        EXPECT_EQ(row.size(), domain_.cells()[0]);  // x wraps around
+        EXPECT_EQ(row.size(), domain_.cells()[0]);  // x is periodic
         for (; row.j < j_end; ++row.j) do_row(s, row.j, row.k);
       };
       domain_.dimension() == 2 ? pass.go<2>(task, rows) : pass.go<3>(task, rows);
     });
   }
 
-  // Every stage has done its rows, layers included, and each of them once.
+  // Checks that every stage has processed its rows, including layers, exactly once.
   void expect_complete() const {
     long rows = 0;
     for (int s = 0; s < depth_; ++s)
@@ -77,7 +77,8 @@ private:
 
 }  // namespace
 
-// Always a row of the block, and in blocks that are large enough the one that comes so many rows later.
+// The row ahead is always a row of the block and, in blocks that are large enough, the one that is processed
+// RowAhead::rows rows later.
 TEST(Blocks, RowsAheadAreThoseOfTheBlock) {
   for (int rows = 1; rows <= 2 * RowAhead::rows + 3; ++rows) {
     const int begin = 5, end = begin + rows;

@@ -1,5 +1,5 @@
-// A Box is any block of cells: the part of a rank, or the surroundings of a body, which may begin anywhere, be cut at a
-// side of the domain or reach across a periodic one.
+// A Box is any block of cells: the part of a rank, or the surroundings of a body, which may begin anywhere, end at a
+// boundary of the domain or extend across a periodic one.
 #include "grid/box.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 namespace eulastic {
 namespace {
 
-// 40 x 30 x 20 cells: x periodic, y between walls, z with an open high side.
+// 40 x 30 x 20 cells: x periodic, y between walls, z with an open high boundary.
 DomainShape shape() {
   DomainShape shape;
   shape.cells = {40, 30, 20};
@@ -40,7 +40,8 @@ TEST(Box, InTheMiddleOfTheDomainTouchesNothing) {
 }
 
 TEST(Box, GhostsEndBehindSidesOfTheDomainOnly) {
-  const Box box(shape(), {-3, 2, 14}, {6, 28, 4}, 5);  // begins across the periodic side, ends at the high wall in y
+  // begins across the periodic boundary, ends at the high wall in y
+  const Box box(shape(), {-3, 2, 14}, {6, 28, 4}, 5);
   const auto near = [&](int d, bool staggered, int layers) {
     const Box::Range range = box.points_near(d, staggered, layers);
     return std::array<int, 2>{range.begin, range.end};
@@ -49,7 +50,7 @@ TEST(Box, GhostsEndBehindSidesOfTheDomainOnly) {
   EXPECT_EQ(near(1, false, 5), (std::array<int, 2>{-2, 28}));
   EXPECT_EQ(near(1, true, 5), (std::array<int, 2>{-2, 29}));  // the face on the wall is a point
   EXPECT_EQ(near(1, true, 1), (std::array<int, 2>{-1, 29}));
-  EXPECT_EQ(near(2, false, 5), (std::array<int, 2>{-5, 6}));  // two cells are left before the side
+  EXPECT_EQ(near(2, false, 5), (std::array<int, 2>{-5, 6}));  // two cells remain before the boundary
   EXPECT_EQ(near(2, true, 5), (std::array<int, 2>{-5, 7}));
   EXPECT_TRUE(box.touches(1, true));
   EXPECT_FALSE(box.touches(1, false));
@@ -67,7 +68,7 @@ TEST(Box, FacesAndCellsOnTheSidesThatItTouches) {
     EXPECT_EQ(row.k, 3);
     EXPECT_EQ(row.size(), 40);
   }
-  EXPECT_TRUE(box.open_high_faces(1).empty());  // a wall is closed
+  EXPECT_TRUE(box.open_high_faces(1).empty());  // a wall is not open
   int points = 0;
   for_points(box.cells_at(1, true, 2), [&](int, int j, int) {
     EXPECT_GE(j, 28);
@@ -85,7 +86,7 @@ TEST(Box, MemoryHasRoomForAllGhosts) {
     const Box box(shape(), {0, 0, 0}, cells, 5);
     const Layout &layout = box.layout();
     EXPECT_GE(layout.offset(-5, -5, -5), 0);
-    EXPECT_LT(layout.offset(cells[0] + 4, cells[1] + 5, cells[2] + 5), layout.size);  // y and z have sides
+    EXPECT_LT(layout.offset(cells[0] + 4, cells[1] + 5, cells[2] + 5), layout.size);  // y and z have boundaries
     EXPECT_GE(layout.sy, cells[0] + 2 * 5);
     EXPECT_GE(layout.sz, layout.sy * (cells[1] + 2 * 5 + 1));
   }

@@ -1,4 +1,4 @@
-// Decompositions, their refusals, and the memory layout of one rank.
+// Decompositions, error messages of impossible ones, and the memory layout of one rank.
 #include "grid/domain.hpp"
 #include "field/field.hpp"
 
@@ -35,7 +35,7 @@ TEST(GridDecomposition, SplitsXOnlyWhenItMust) {
   EXPECT_EQ(Domain::decompose(box({20, 13, 1}), 5), (Int3{5, 1, 1}));
 }
 
-// Where a whole x has many more ghosts, in whole blocks of the exact sums alone.
+// x is split in whole blocks of the exact sums where whole rows would have many more ghosts.
 TEST(GridDecomposition, SplitsALongXInBlocks) {
   const GridSpec paper = box({24576, 5184, 5120});
   const Int3 best = Domain::decompose(paper, 82944), rank = Domain::largest_box(paper, best);
@@ -60,8 +60,8 @@ TEST(GridDecomposition, ObeysOrders) {
   EXPECT_EQ(Domain::decompose(box({64, 64, 64}, {-1, 0, 0}), 4), (Int3{0, 0, 0}));
 }
 
-// Whatever is answered multiplies to the number of ranks and leaves every rank its 3 cells; whatever is refused has
-// no product of ranks with 3 cells each.
+// Every decomposition has the right number of ranks and at least 3 cells per rank; it is refused only if there is no
+// product of ranks with 3 cells each.
 TEST(GridDecomposition, AnswersExactlyWhenThereIsAnAnswer) {
   for (const Int3 &cells : {Int3{13, 10, 11}, Int3{5, 9, 7}, Int3{17, 12, 1}, Int3{3, 3, 3}, Int3{520, 4, 3}})
     for (int ranks = 1; ranks <= 40; ++ranks) {
@@ -113,7 +113,7 @@ TEST(GridGeometry, SpacingVolumeAndWalls) {
   EXPECT_EQ(domain.points_end(1, true), 5);
   EXPECT_EQ(domain.points_end(1, false), 4);
 
-  spec.cells[2] = 1;  // 2-D: a wall in z means nothing
+  spec.cells[2] = 1;  // 2-D: a wall in z is ignored
   ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
   EXPECT_EQ(domain.dimension(), 2);
   EXPECT_EQ(domain.cell_volume(), .1875);

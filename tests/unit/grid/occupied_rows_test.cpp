@@ -1,4 +1,4 @@
-// Spans of rows: wide enough, empty elsewhere, and found again after what they hold has moved.
+// Spans of rows: they are wide enough, empty elsewhere, and right again after the field has moved.
 #include "grid/occupied_rows.hpp"
 #include "field/field.hpp"
 
@@ -21,7 +21,7 @@ struct Scene {
     reach = domain.layout().ghosts[0] + 2;
   }
   PetscErrorCode follow() { return OccupiedRows::follow(domain, {{&rows, std::as_const(value)[0]}}); }
-  // What span() promises for one cell that is not zero.
+  // Checks the span that span() documents for a single nonzero cell.
   void expect(const Int3 &cell) const {
     const bool flat = domain.dimension() == 2;
     for (int k = 0; k < domain.cells()[2]; ++k)
@@ -70,7 +70,7 @@ TEST(OccupiedRows, WhatIsFarFromEverythingIsNotReadAgain) {
   s.value[0](24, 20, 0) = 1;
   ASSERT_EQ(s.follow(), 0);
   EXPECT_EQ(s.rows.cells(), 0);
-  s.value[0](24, -1, 0) = 1;  // from beyond, where nothing was near
+  s.value[0](24, -1, 0) = 1;  // comes from another rank, where no value was near
   ASSERT_EQ(s.follow(), 0);
   EXPECT_TRUE(s.rows.idle(0, 0));
   s.value[0](24, 39, 0) = 1;
@@ -79,7 +79,7 @@ TEST(OccupiedRows, WhatIsFarFromEverythingIsNotReadAgain) {
   s.value[0](24, -1, 0) = 0;
   ASSERT_EQ(s.follow(), 0);
   EXPECT_TRUE(s.rows.idle(0, 0));
-  s.value[0](24, -1, 0) = 1;  // from beyond, where something is near
+  s.value[0](24, -1, 0) = 1;  // comes from another rank, where a value is near
   ASSERT_EQ(s.follow(), 0);
   EXPECT_FALSE(s.rows.idle(0, 0));
 }

@@ -1,4 +1,5 @@
-// Active segments: a superset, no larger than promised, aligned; and a step that does not see what was skipped.
+// Active segments contain all required points, not too many others, and are aligned; a step does not depend on
+// skipping.
 #include "support/all_segments.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
@@ -21,7 +22,7 @@ bool active(const Domain &domain, ConstView value, int low, int high, int i, int
   return false;
 }
 
-// Values above the threshold with the given probability, ghosts too.
+// Fills a field with values above the threshold with the given probability, including ghosts.
 void check(const GridSpec &spec, int low, int high, double share, Random &random) {
   SCOPED_TRACE(::testing::Message() << spec.cells[0] << " cells, reach " << low << " " << high << ", share " << share);
   Domain domain;
@@ -49,7 +50,7 @@ void check(const GridSpec &spec, int low, int high, double share, Random &random
         ASSERT_LE(s.i_end, domain.points_end(0, true));
         EXPECT_TRUE(s.i_end % 8 == 0 || s.i_end == domain.points_end(0, true))
             << "whole vectors where the row has them";
-        int idle = 0;  // never twice a vector: what was rounded down or closed
+        int idle = 0;  // inactive points in a row, fewer than in two vectors
         for (int i = s.i_begin; i < s.i_end; ++i) {
           covered[i] = 1;
           idle = active(domain, q, low, high, i, j, k) ? 0 : idle + 1;
@@ -91,7 +92,8 @@ bool covers(const ActiveSegments &segments, int i, int j, int k) {
   return false;
 }
 
-// The band: cells that with their neighbours are neither all empty nor all full; its faces: those and the next ones.
+// The band: cells that are together with their neighbours neither all empty nor all full. Its faces: those of the cells
+// and of the next ones.
 TEST(ActiveSegments, BandAndItsFaces) {
   Random random(2);
   for (const Int3 &cells : {Int3{61, 4, 5}, Int3{40, 7, 1}})
@@ -167,7 +169,7 @@ bool same_bits(const Domain &domain, ConstView a, ConstView b, const Staggering 
   return true;
 }
 
-// A body in shear, attached to nothing or cut by a wall: predictor and tensor with and without skipping.
+// A free body in shear, and one that a wall cuts: predictor and tensor with and without skipping.
 void compare_steps(bool flat, double y) {
   SCOPED_TRACE(::testing::Message() << "flat " << flat << ", y " << y);
   Scene scene;

@@ -1,4 +1,4 @@
-// Parts of the rows and pieces of work that threads share.
+// Parts of the rows, and pieces of work, that threads share.
 #include "grid/threads.hpp"
 #include "base/events.hpp"
 #include "bodies/body_sums.hpp"
@@ -24,7 +24,7 @@ Domain make_grid(const Int3 &cells) {
   return domain;
 }
 
-using Rows = std::map<std::pair<int, int>, int>;  // how often row (j, k) is there
+using Rows = std::map<std::pair<int, int>, int>;  // number of times that row (j, k) occurs
 
 void count_rows(const RowPart &part, Rows *rows) {
   for (int k = part.k_begin; k < part.k_end; ++k)

@@ -1,4 +1,4 @@
-// Our cube root against libm's in long double, and the same bits for every vector length.
+// The cube root is compared with that of libm in long double; its bits do not depend on the vector length.
 #include "kernels/plane.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Our exp against that of libm in long double, and the same bits for every vector length.
+// The exponential is compared with that of libm in long double; its bits do not depend on the vector length.
 #include "kernels/exp.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int samples = 200003;
 
-// Difference from `exact` in units of the last place of `exact`.
+// Returns the difference from `exact` in units of the last place of `exact`.
 double ulps(double value, long double exact) {
   const double rounded = std::fabs(static_cast<double>(exact));
   const double unit = std::nextafter(rounded, INFINITY) - rounded;

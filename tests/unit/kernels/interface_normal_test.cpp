@@ -1,4 +1,4 @@
-// Mixed Youngs-centred normals of planes, which of the two is taken, and mirrored bits.
+// Normals of planes by the mixed Youngs-centred scheme, the choice between the two normals, and mirrored bits.
 #include "kernels/interface_normal.hpp"
 #include "kernels/interface_flux.hpp"
 
@@ -14,7 +14,7 @@ using kernels::InterfaceNormal;
 
 namespace {
 
-// 3 x 3 x 3 cells; q(0, 0, 0) is the one in the middle.
+// 3 x 3 x 3 cells; q(0, 0, 0) is the middle one.
 struct Block {
   double value[27];
   double &q(int i, int j, int k) { return value[13 + i + 3 * j + 9 * k]; }
@@ -22,7 +22,7 @@ struct Block {
   InterfaceNormal flat_normal() const { return interface_normal<2>(value + 13, 1, 3, 0); }
 };
 
-// Fractions of n.x < alpha, n of any signs, x from the low corner of the middle cell.
+// Sets the fractions of n.x < alpha for n of any signs, x from the low corner of the middle cell.
 Block plane(const double (&n)[3], double alpha) {
   Block block;
   const double m[3] = {std::fabs(n[0]), std::fabs(n[1]), std::fabs(n[2])};
@@ -36,7 +36,7 @@ Block plane(const double (&n)[3], double alpha) {
   return block;
 }
 
-// Columns see all of a plane that is not inclined by more than their ends allow: its normal is exact.
+// The normal is exact where the columns contain the whole plane.
 TEST(InterfaceNormal, IsExactForPlanesAcrossColumns) {
   for (const double s : {-0.45, 0.0, 0.2, 0.5})
     for (const double t : {-0.3, 0.0, 0.4})
@@ -65,12 +65,13 @@ TEST(InterfaceNormal, IsYoungsNearADiagonal) {
   EXPECT_NEAR(found.a, g[0] / sum, 1e-15);
   EXPECT_NEAR(found.b, g[1] / sum, 1e-15);
   EXPECT_NEAR(found.c, g[2] / sum, 1e-15);
-  // And both are close to the plane's.
+  // Both are close to the normal of the plane.
   EXPECT_NEAR(found.a, -1 / 2.85, 0.01);
   EXPECT_NEAR(found.c, -0.9 / 2.85, 0.01);
 }
 
-// Youngs differs from the columns where those are taken: the test above would not see which is which else.
+// Youngs' normal differs from that of the columns where the latter is taken; otherwise the test above could not
+// distinguish them.
 TEST(InterfaceNormal, IsNotYoungsAcrossColumns) {
   const double n[3] = {0.4, 1, 0.2};
   const Block block = plane(n, 0.8);
@@ -86,12 +87,12 @@ TEST(InterfaceNormal, IsNothingWherePhiIsEvenOrUniform) {
   EXPECT_EQ(block.normal().a, 0);
   EXPECT_EQ(block.flat_normal().b, 0);
   std::fill(block.value, block.value + 27, 0);
-  block.q(0, 0, 0) = 0.7;  // alone
+  block.q(0, 0, 0) = 0.7;  // no other cell is filled
   const InterfaceNormal found = block.normal();
   EXPECT_EQ(std::fabs(found.a) + std::fabs(found.b) + std::fabs(found.c), 0);
 }
 
-// In 2-D the same as in 3-D for what is uniform along z.
+// The 2-D normal equals the 3-D one for fractions that are uniform along z.
 TEST(InterfaceNormal, IsThatOf3DInAFlatScene) {
   std::mt19937_64 random{5};
   for (int n = 0; n < 1000; ++n) {
@@ -107,7 +108,7 @@ TEST(InterfaceNormal, IsThatOf3DInAFlatScene) {
   }
 }
 
-// Any values, ties among them; mirrored in any directions.
+// Arbitrary values, including ties, mirrored in arbitrary directions.
 TEST(InterfaceNormal, HasMirroredBits) {
   std::mt19937_64 random{3};
   for (int n = 0; n < 2000; ++n) {

@@ -1,4 +1,5 @@
-// Planes in cells: volume and constant invert each other, a linear interface has exact fluxes, limits hold.
+// Planes in cells: volume and constant are inverse functions, a linear interface has exact fluxes, limits are
+// respected.
 #include "kernels/plane.hpp"
 
 #include <gtest/gtest.h>
@@ -14,19 +15,19 @@ using kernels::volume_below;
 namespace {
 
 struct Plane {
-  double a, b, c;  // of sum 1
+  double a, b, c;  // with the sum 1
 };
 
 class RandomPlanes : public ::testing::Test {
 protected:
   std::mt19937_64 random{7};
   double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(random); }
-  // Often next to 0 or 1.
+  // Often close to 0 or 1.
   double any_phi() {
     const double q = uniform(0, 1), small = std::pow(10, uniform(-18, 0));
     return q < 0.4 ? uniform(0, 1) : q < 0.7 ? small : 1 - small;
   }
-  // Often along an axis or a diagonal, to the bit or nearly.
+  // Often along an axis or a diagonal, exactly or nearly.
   Plane any_plane(int dimension) {
     double m[3] = {};
     do
@@ -42,7 +43,7 @@ protected:
   }
 };
 
-// Volume below a plane by the formula of inclusion and exclusion, which cancels where a component is small.
+// Volume below a plane by inclusion and exclusion, a formula that cancels where a component is small.
 long double volume_by_corners(int dimension, long double alpha, const Plane &p) {
   const long double m[3] = {p.a, p.b, p.c};
   long double sum = 0, product = dimension == 2 ? 2 : 6;
@@ -78,7 +79,7 @@ TEST_F(RandomPlanes, ComeBackFromTheirVolume) {
   }
 }
 
-// One formula for any order of the axes, and half of the cell has half of the constant.
+// The constant does not depend on the order of the axes, and is 1/2 for half of the volume.
 TEST_F(RandomPlanes, DoNotKnowTheirAxes) {
   for (int n = 0; n < 10000; ++n) {
     const double phi = any_phi();
@@ -101,7 +102,7 @@ TEST_F(RandomPlanes, GiveNoMoreThanThereIs) {
   }
 }
 
-// Fluid and solid change places; and both ends of the cell together give all of it.
+// Exchanging fluid and solid; and the fluxes through opposite faces add up to the volume of the cell.
 TEST_F(RandomPlanes, AddUp) {
   for (int n = 0; n < 100000; ++n) {
     const double phi = any_phi(), courant = uniform(0, 1);
@@ -114,7 +115,7 @@ TEST_F(RandomPlanes, AddUp) {
   }
 }
 
-// What a plane in the cell has before the face, by integrating its depth over the face.
+// The volume before the face, by integrating the depth of the plane over the face.
 TEST_F(RandomPlanes, HaveExactFluxes) {
   for (int n = 0; n < 200; ++n) {
     const Plane p{uniform(0.1, 1), uniform(0.1, 1), uniform(0.1, 1)};
@@ -130,7 +131,7 @@ TEST_F(RandomPlanes, HaveExactFluxes) {
       }
     const double found = plane_constant<3>(phi, a, b, c);
     EXPECT_NEAR(found, alpha, 1e-13);
-    EXPECT_NEAR(plane_flux<3>(phi, found, a, b, c, courant), towards, 1e-5);  // midpoints: kinks cost 1/points^2
+    EXPECT_NEAR(plane_flux<3>(phi, found, a, b, c, courant), towards, 1e-5);  // midpoint rule: kinks cost 1/points^2
     EXPECT_NEAR(plane_flux<3>(phi, found, -a, b, c, courant), away, 1e-5);
   }
 }
@@ -147,7 +148,7 @@ TEST(PlaneFlux, IsExactAlongAnAxis) {
     }
 }
 
-// No tails: remains that lie on the side of their body all leave towards it, in small steps too, and none away from it.
+// Small remainders beside their body leave completely towards it, also in small steps, and not away from it.
 TEST(PlaneFlux, LeavesNothingBehind) {
   for (const double phi : {1e-12, 1e-7, 1e-4}) {
     const double alpha = plane_constant<3>(phi, 0.5, 0.3, 0.2);

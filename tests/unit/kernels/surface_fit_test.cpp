@@ -1,4 +1,4 @@
-// Quadratics over a plane by least squares, and averages over four points.
+// Least-squares fits of quadratics over a plane, and interpolation from four points.
 #include "kernels/surface_fit.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The upwind difference of fifth order: exact for polynomials of fifth degree, upwind, its own mirror image.
+// The upwind difference of fifth order is exact for polynomials of fifth degree, upwind, and its own mirror image.
 #include "kernels/weno5.hpp"
 
 #include <gtest/gtest.h>

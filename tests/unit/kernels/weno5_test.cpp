@@ -1,4 +1,4 @@
-// WENO5 against its textbook form, polynomials and smooth data; symmetry, steps, constants, pieces of rows.
+// WENO5 is compared with its textbook form, polynomials and smooth data; symmetry, steps, constants, pieces of rows.
 #include "support/advection.hpp"
 #include "support/polynomials.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// Jiang & Shu (1996) as printed, in undivided differences.
+// The formulas of Jiang & Shu (1996) in undivided differences.
 double jiang_shu(const double *q, bool from_left, double epsilon) {
   double v[5];
   for (int m = 0; m < 5; ++m) v[m] = from_left ? q[m - 2] - q[m - 3] : q[3 - m] - q[2 - m];
@@ -35,7 +35,7 @@ double jiang_shu(const double *q, bool from_left, double epsilon) {
   return above / below;
 }
 
-// Seven points in every stride, everything else poisoned.
+// Seven points at every stride; all other values are poisoned.
 struct Stencil {
   std::ptrdiff_t stride;
   std::vector<double> data;
@@ -66,7 +66,7 @@ TEST(Weno5, EqualsTheTextbook) {
     }
 }
 
-// All three stencils are exact on cubics, whatever their weights; the ideal weights (huge epsilon) on quintics.
+// All three stencils are exact for cubics with any weights, and with the ideal weights (huge epsilon) for quintics.
 TEST(Weno5, ExactOnPolynomials) {
   Random random(2);
   Stencil line(1);
@@ -157,7 +157,7 @@ TEST(Weno5, ConstantsHaveNoSlope) {
     }
 }
 
-// A step is seen in the cell behind it and nowhere else, and is never much higher than it is.
+// A step changes only the cell behind it, and the difference is not much larger than the step.
 TEST(Weno5, StepIsNotSmearedNorOvershot) {
   Stencil line(1);
   for (int step = -3; step < 3; ++step)  // between the points step and step + 1
@@ -175,7 +175,7 @@ TEST(Weno5, AdvectedStepStaysBounded) {
   for (int i = 0; i < n; ++i) q[i + 3] = i >= 10 && i < 25;
   const double *carried[3] = {velocity.data() + 3, velocity.data() + 3, velocity.data() + 3};
   const double inverse[3] = {1, 0, 0};
-  for (int step = 0; step < 200; ++step) {  // 40 cells: once around
+  for (int step = 0; step < 200; ++step) {  // 40 cells, one period
     for (int g = 0; g < 3; ++g) q[g] = q[n + g], q[n + 3 + g] = q[3 + g];
     std::vector<double> rate(n);
     advection_rate<2>(Segment{0, n, 0, 0}, {q.data() + 3, 0, 0}, carried, inverse, 1e-6, rate.data());
@@ -237,7 +237,7 @@ TEST(Weno5, PiecesOfARowHaveTheBitsOfTheWhole) {
   EXPECT_EQ(std::memcmp(whole.data(), pieces.data(), sizeof(double) * 37), 0);
 }
 
-// Batches go through all directions in one loop, rows through one at a time.
+// Batches process all directions in one loop, rows one direction at a time.
 TEST(Weno5, BatchesHaveTheBitsOfRows) {
   Random random(8);
   GridSpec spec = uneven_box(false, {37, 3, 3});
@@ -258,9 +258,9 @@ TEST(Weno5, BatchesHaveTheBitsOfRows) {
     done = 32;
   };
   kernels::Batch batch, rest;
-  kernels::gather(batch, q[0].sy + q[0].sz, 0, 32, work);  // four vectors, not yet done
+  kernels::gather(batch, q[0].sy + q[0].sz, 0, 32, work);  // four vectors, which wait in the batch
   work(batch);
-  kernels::gather(rest, q[0].sy + q[0].sz, 32, 37, work);  // less than a vector: at once
+  kernels::gather(rest, q[0].sy + q[0].sz, 32, 37, work);  // less than a vector, processed at once
   EXPECT_EQ(std::memcmp(row.data(), batched.data(), sizeof(double) * 37), 0);
 }
 

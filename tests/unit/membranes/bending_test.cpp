@@ -20,7 +20,7 @@ TEST(Bending, SurfaceLevelIsTheQuantileOfTheNormalDistribution) {
   EXPECT_GT(kernels::surface_level(0), 3.5);
 }
 
-// Of any function of the distance from a ball or a tube.
+// The curvatures are those of the level surfaces of any function of the distance from a ball or a tube.
 TEST(Bending, CurvaturesAreThoseOfTheSurface) {
   constexpr int n = 3;
   constexpr double h = 0.05, inverse[3] = {1 / h, 1 / h, 1 / h}, radius = 1;
@@ -48,7 +48,7 @@ TEST(Bending, CurvaturesAreThoseOfTheSurface) {
     }
 }
 
-// 1/2 (kappa - c0)^2 over an ellipse or an ellipsoid of revolution around x.
+// Integral of 1/2 (kappa - c0)^2 over an ellipse or an ellipsoid of revolution around x.
 double exact_energy(double a, double b, double c0, int dim) {
   constexpr int parts = 4000;
   double sum = 0;
@@ -66,7 +66,7 @@ struct Seen {
   double energy, power, force;
 };
 
-// An ellipse or ellipsoid with semi-axes a, b, b, in the flow that stretches it at the rate 1 along x.
+// An ellipse or ellipsoid with semi-axes a, b, b in a flow that stretches it at the rate 1 along x.
 Seen bend(double a, double b, double c0, int dim, int cells) {
   InterfaceScene scene;
   GridSpec spec;
@@ -113,7 +113,7 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
   return seen;
 }
 
-// 8 to 9 cells per radius, then half as many again.
+// The radius has 8 to 9 cells, then one and a half times as many.
 TEST(Bending, PowerIsTheChangeOfTheEnergy) {
   for (const int dim : {2, 3})
     for (const double c0 : {0.0, 3.0}) {
@@ -136,7 +136,7 @@ TEST(Bending, PowerIsTheChangeOfTheEnergy) {
     }
 }
 
-// Of a ball the force is that of a pressure, E_b (kappa - c0) c0/R outwards: none at c0 = 0 and at 2/R.
+// The force on a ball is that of a pressure, E_b (kappa - c0) c0/R outwards, which vanishes for c0 = 0 and c0 = 2/R.
 TEST(Bending, BallsAreAtRest) {
   constexpr double radius = 0.3;
   for (const double c0 : {0.0, 2 / radius}) EXPECT_NEAR(bend(radius, radius, c0, 3, 40).power, 0, 0.05 * 8 * M_PI);

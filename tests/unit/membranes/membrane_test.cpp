@@ -1,4 +1,4 @@
-// Laws of membranes, and the surface cells they live in.
+// Laws of membranes, and the surface cells where their tensor is stored.
 #include "kernels/membrane.hpp"
 #include "membranes/membrane_transport.hpp"
 #include "support/interface_scene.hpp"
@@ -15,7 +15,7 @@ namespace {
 using kernels::Membrane;
 using kernels::MembraneLaw;
 
-// B_s of the principal stretches a and b in the plane normal to n, a along t.
+// B_s with the principal stretches a and b in the plane normal to n, a along t.
 kernels::Tensor<3> strained(double a, double b, const kernels::Vector<3> &n, const kernels::Vector<3> &t) {
   const kernels::Vector<3> s{n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
   kernels::Tensor<3> B;
@@ -27,7 +27,7 @@ kernels::Tensor<3> strained(double a, double b, const kernels::Vector<3> &n, con
 const kernels::Vector<3> normal{2. / 3, -1. / 3, 2. / 3}, along{1 / std::sqrt(2.), 0, -1 / std::sqrt(2.)};
 const Membrane laws[] = {{MembraneLaw::neo_hookean, 1.7, 0, 1}, {MembraneLaw::skalak, 1.7, 2.5, 1}};
 
-// Tension along a over the length of b: dW/da.
+// Tension along a times the length of b, dW/da.
 TEST(Membrane, TensionIsTheDerivativeOfTheEnergy) {
   for (const Membrane &law : laws)
     for (const auto &[a, b] : {std::pair{1.0, 1.0}, {1.3, 0.8}, {0.9, 1.5}}) {
@@ -82,7 +82,7 @@ TEST(Membrane, AreaIsKeptAboveABoundByBringingStretchesTogether) {
   EXPECT_FALSE(kernels::keep_area<3>(normal, least, &none));
 }
 
-// F P_0 F^T, n_0 the normal that F turns into n.
+// F P_0 F^T, where n_0 is the normal that F turns into n.
 TEST(Membrane, TakesItsPartOfTheStretchOfABody) {
   const double F[3][3] = {{1.2, 0.3, -0.1}, {0.1, 0.8, 0.2}, {-0.2, 0.05, 1.1}};
   kernels::Vector<3> before{};
@@ -123,7 +123,7 @@ TEST(Membrane, ProjectionTakesOffTheNormalAndNoMore) {
     for (int y = 0; y < 3; ++y) EXPECT_NEAR(projected[x][y], B[x][y], 1e-14);
 }
 
-// Out of the plane normal to `from` into that normal to n, as the second of two.
+// Turns a tensor from the plane normal to `from` into that normal to n, as the second of two.
 kernels::Tensor<3> turned(const kernels::Tensor<3> &B, const kernels::Vector<3> &from, const kernels::Vector<3> &n) {
   double share[2] = {0, 1}, normals[3][2] = {}, fields[6][2] = {};
   for (int x = 0; x < 3; ++x) {
@@ -196,7 +196,7 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
       const SurfaceCells::Cell &cell = cells.all()[c];
       if (!cell.owned) continue;
       area += cell.delta * std::pow(h, dim);
-      if (c >= cells.nearest()) continue;
+      if (c >= cells.nearest_count()) continue;
       const Real3 x = ball.from_centre(cell);
       const double r = std::hypot(x[0], x[1], x[2]);
       ++near;
@@ -209,7 +209,7 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
   }
 }
 
-// What is isotropic on the surface is so in the layers, around their own normals, and is there as far as WENO5 reads.
+// An isotropic tensor on the surface is isotropic in the layers, around their own normals, as far as WENO5 reads.
 TEST(SurfaceCells, ExtendWhatIsIsotropic) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
@@ -222,7 +222,7 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
       const auto [a, b, at] = components[f];
       return (a == b) - cell.normal[a] * cell.normal[b];
     };
-    for (std::size_t c = 0; c < cells.nearest(); ++c)
+    for (std::size_t c = 0; c < cells.nearest_count(); ++c)
       for (int f = 0; f < tensor.count(); ++f) tensor[f].origin[cells.all()[c].at] = tangential(cells.all()[c], f);
     ASSERT_EQ(cells.extend(ball.phases[0], tensor), 0);
     std::map<std::ptrdiff_t, int> known;
@@ -231,7 +231,7 @@ TEST(SurfaceCells, ExtendWhatIsIsotropic) {
       for (int f = 0; f < tensor.count() && cell.owned && cell.delta > 0; ++f)  // beyond there is no normal
         EXPECT_NEAR(tensor[f].origin[cell.at], tangential(cell, f), 1e-12);
     }
-    for (std::size_t c = 0; c < cells.nearest(); ++c)
+    for (std::size_t c = 0; c < cells.nearest_count(); ++c)
       for (int d = 0; d < dim; ++d)
         for (int n = -3; n <= 3; ++n) {
           const SurfaceCells::Cell &cell = cells.all()[c];
@@ -258,13 +258,14 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
       SurfaceEnergy seen;
       ASSERT_EQ(membrane.add_surface_energy({flow.now.phases, {}}, &seen, nullptr), 0);
       const double area = dim == 2 ? 2 * M_PI * Ball::radius : 4 * M_PI * Ball::radius * Ball::radius;
-      // Stretch of area J: in the plane lengths are J, in space J^(1/2).
+      // The area is stretched by J: lengths by J in 2-D, by J^(1/2) in 3-D.
       const double J = stretch, trace = dim == 2 ? J * J + 1 : 2 * J;
       const double energy = 0.5 * 2 * (trace + 1 / (J * J) - 3) / J * area;
       EXPECT_NEAR(seen.energy, energy, 0.03 * energy + 1e-12);
       Field force(ball.domain, dim);
       ASSERT_EQ(membrane.add_force(flow.now.phases, 1, false, force), 0);
-      // Force towards the centre, r . f over the volume: minus the tension times the dimensions of the surface.
+      // The volume integral of r . f, with f towards the centre, is minus the tension times the dimension of the
+      // surface.
       double virial = 0, largest = 0;
       ball.each_owned([&](int i, int j, int k) {
         for (int d = 0; d < dim; ++d) {
@@ -284,8 +285,8 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
   }
 }
 
-// A fit that markers do not determine may tell of any strain: one of five times the length is not believed, one of 1.2
-// times is.
+// A fit that markers do not determine may yield any strain: one with five times the length is rejected, one with 1.2
+// times the length is used.
 TEST(Membrane, BelievesMarkersThatTellOfALikelyStrain) {
   for (const double stretch : {1.2, 5.0}) {
     Ball ball(2);

@@ -1,4 +1,4 @@
-// -NAME_stretch_force: opposite forces on the two ends of a body, wherever it lies.
+// -NAME_stretch_force: opposite forces on the two ends of a body at any position.
 #include "membranes/stretch_force.hpp"
 #include "support/interface_scene.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 constexpr int cells = 40;
 constexpr double radius = 0.33, force = 0.7, part = 0.1;
 
-// A ball or disc whose centre has this x, in a periodic box.
+// A ball or disc in a periodic box whose centre has this x.
 struct Pulled : InterfaceScene {
   std::unique_ptr<Flow> flow;
   std::unique_ptr<StretchForces> forces;
@@ -38,21 +38,21 @@ struct Pulled : InterfaceScene {
     EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
     flow->bodies.add_phase(domain, {{{std::fmod(x, 1.0), centre[1], centre[2]}, {}}});
   }
-  // What they add to a rate.
+  // The forces as added to a rate.
   Field rate(double scale) {
     Field rate(domain, dim);
     const MomentumStep any_step{};
     EXPECT_EQ(forces->add_rate({any_step, scale, rate, nullptr, {}, 0}), 0);
     return rate;
   }
-  /// From the centre, of a face or a cell.
+  /// Position of a face or a cell relative to the centre.
   double x_of(int i, bool cell) const {
     const double x = position({i, 0, 0}, {cell, true, true})[0] - centre[0];
     return x - std::round(x);
   }
 };
 
-// Volume and mean x of what a ball or disc has beyond t.
+// Volume and mean x of the part of a ball or disc beyond t.
 std::pair<double, double> cap(int dim, double t) {
   const double R = radius, s = R * R - t * t;
   if (dim == 2) {
@@ -92,7 +92,7 @@ TEST(StretchForce, PullsThatPartOfTheVolumeAtEitherEnd) {
   }
 }
 
-// Nothing jumps when the body moves by a hundredth of a cell.
+// The force is continuous when the body moves by a hundredth of a cell.
 TEST(StretchForce, FollowsTheBodyContinuously) {
   constexpr double step = 0.01 / cells;
   double before = 0, most = 0, travelled = 0;

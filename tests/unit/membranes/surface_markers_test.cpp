@@ -1,4 +1,4 @@
-// Markers of membranes: the strain they tell, where they go, and who keeps them.
+// Markers of membranes: the strain they determine, their motion, and the ranks that own them.
 #include "membranes/surface_markers.hpp"
 #include "kernels/surface_fit.hpp"
 #include "membranes/membrane_tensor.hpp"
@@ -13,7 +13,7 @@ using namespace eulastic::test;
 
 namespace {
 
-// A ball in a periodic box, across its sides, whose membrane is at rest.
+// A ball in a periodic box, across its boundaries, with an undeformed membrane.
 struct MarkedBall : InterfaceScene {
   static constexpr int cells = 24;
   static constexpr double radius = 0.3;
@@ -45,13 +45,13 @@ struct MarkedBall : InterfaceScene {
     EXPECT_EQ(surface->find(phase, smooth), 0);
     markers = std::make_unique<SurfaceMarkers>(domain);
   }
-  std::size_t owned_nearest() const {
-    return std::count_if(surface->all().begin(), surface->all().begin() + surface->nearest(),
+  std::size_t owned_nearest_count() const {
+    return std::count_if(surface->all().begin(), surface->all().begin() + surface->nearest_count(),
                          [](const SurfaceCells::Cell &cell) { return cell.owned; });
   }
   template <int Dim>
   void set_strain(double stretch) {
-    for (std::size_t c = 0; c < surface->nearest(); ++c) {
+    for (std::size_t c = 0; c < surface->nearest_count(); ++c) {
       const SurfaceCells::Cell &cell = surface->all()[c];
       kernels::Tensor<Dim> P = kernels::tangential<Dim>(normal_of<Dim>(cell.normal));
       for (auto &row : P)
@@ -61,8 +61,8 @@ struct MarkedBall : InterfaceScene {
   }
 };
 
-// The places at rest moved as x = F X: then B_s = F P_0 F^T, s times it where it was stretched by that before. The body
-// lies across the box: places differ by less than half of it.
+// Undeformed positions are moved as x = F X, so that B_s = F P_0 F^T, times s if the membrane was stretched before. The
+// body crosses the boundaries of the box: positions differ by less than half of it.
 template <int Dim>
 void tells_the_strain(double stretch) {
   MarkedBall ball(Dim);
@@ -83,7 +83,7 @@ void tells_the_strain(double stretch) {
   ASSERT_EQ(ball.markers->move(0, velocity, &ball.all), 0);
   std::vector<SurfaceMarkers::Strain> strains;
   ball.markers->find_strain(*ball.surface, 0, &strains);
-  EXPECT_EQ(strains.size(), ball.owned_nearest());
+  EXPECT_EQ(strains.size(), ball.owned_nearest_count());
   EXPECT_GT(strains.size(), Dim == 2 ? 50u : 1000u);
   kernels::Tensor<Dim> B{};
   for (int x = 0; x < Dim; ++x)
@@ -129,7 +129,7 @@ TEST(SurfaceMarkers, AreSilentWhereThereAreNone) {
   std::vector<SurfaceMarkers::Strain> strains;
   ball.markers->find_strain(*ball.surface, 0, &strains);
   EXPECT_GT(strains.size(), 10u);
-  EXPECT_LT(strains.size() + 10, ball.owned_nearest());
+  EXPECT_LT(strains.size() + 10, ball.owned_nearest_count());
 }
 
 TEST(SurfaceMarkers, MoveWithALinearFlowAndAcrossTheBox) {

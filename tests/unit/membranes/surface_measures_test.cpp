@@ -1,4 +1,4 @@
-// What bodies.h5 says of membranes: areas, energies, and how fast they go round.
+// Measures of membranes in bodies.h5: areas, energies, and rates of rotation.
 #include "membranes/surface_measures.hpp"
 #include "membranes/membrane_transport.hpp"
 #include "support/interface_scene.hpp"
@@ -73,7 +73,7 @@ TEST(SurfaceMeasures, AreaAndEnergies) {
     EXPECT_NEAR(seen.area, exact, 0.01 * exact);
     EXPECT_NEAR(seen.shear_energy + seen.area_energy + seen.bending_energy, energy.energy, 1e-9);
     EXPECT_GT(seen.bending_energy, 0.1);
-    // In space the stretch is the same in all directions, in the plane lengths alone change.
+    // In 3-D the stretch is the same in all directions; in 2-D only lengths in the plane change.
     const double J = 1.2, stored = 0.5 * 2 * (2 * J + 1 / (J * J) - 3) / J * exact;
     EXPECT_NEAR(seen.area_energy, stored, 0.02 * stored);
     EXPECT_NEAR(seen.shear_energy, dim == 2 ? (J - 1) * (J - 1) / J * exact : 0, 0.02 * stored);

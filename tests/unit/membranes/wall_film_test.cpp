@@ -1,4 +1,4 @@
-// The pressure that keeps a film of fluid between membranes and walls.
+// The pressure that maintains a film of fluid between membranes and walls.
 #include "membranes/wall_film.hpp"
 #include "support/scene.hpp"
 
@@ -18,7 +18,7 @@ struct Film {
   Field scratch, force;
   WallFilm film;
 
-  // A floor below row `bottom`: a side of the box, or a rigid body in a box without sides.
+  // A floor below row `bottom`: a boundary of the box, or a rigid body in a periodic box.
   explicit Film(int bottom, SideKind side = SideKind::wall) {
     GridSpec spec;
     spec.cells = {cells_x, cells_y, 1};
@@ -40,7 +40,7 @@ struct Film {
     EXPECT_EQ(exchange.update_ghosts(floor.fraction, 5), 0);
     film.find(domain, sides, rigid, scratch);
   }
-  // A body that fills the box above a film of part 1 - beside(i) of row `bottom`.
+  // A body that fills the box above a film with the part 1 - beside(i) of row `bottom`.
   void fill(int bottom, const std::function<double(int)> &beside) {
     for (int j = bottom; j < bottom + 4; ++j)
       for (int i = -5; i < cells_x + 5; ++i) phase.fraction[0](i, j, 0) = j == bottom ? beside(i) : 1;
@@ -55,7 +55,7 @@ struct Film {
   }
 };
 
-// (27b): a flat body presses with P (phi - phi^2/2), nothing where the row beside the wall is free.
+// (27b): a flat body presses with P (phi - phi^2/2), and with 0 if the row beside the wall is free.
 TEST(WallFilm, PushesABodyOffTheWall) {
   for (const int bottom : {0, 2}) {
     Film scene(bottom);
@@ -71,7 +71,7 @@ TEST(WallFilm, PushesABodyOffTheWall) {
   }
 }
 
-// In any flow: phi is carried by mean values along the wall, and the face above is all within the body.
+// For any flow, with central fluxes of phi along the wall, and the face above entirely in the body.
 TEST(WallFilm, StoresWhatTheFlowGivesToIt) {
   Film scene(0);
   const auto beside = [](int i) { return 0.5 + 0.4 * std::sin(2 * M_PI * i / cells_x); };

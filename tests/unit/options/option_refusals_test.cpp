@@ -1,5 +1,7 @@
 // Every class of wrong input is refused in one line that names the option and what is accepted.
 #include "base/petsc.hpp"
+#include "options/help_text.hpp"
+#include "options/renamed_options.hpp"
 #include "support/refusals.hpp"
 
 using namespace eulastic;
@@ -13,7 +15,7 @@ TEST(OptionRefusals, UnknownNames) {
        {"-grid_cells=8,8,8", {"-grid_cells=8,8,8", "nearest known: -grid_cells"}},
        {"--time_step 1", {"--time_step", "nearest known: -time_step"}},
        {"-Time_step 1", {"-Time_step", "nearest known: -time_step"}},
-       {"-other_radius 1", {"unknown option -other_radius: -species names no other; see -help"}},
+       {"-other_radius 1", {"unknown option -other_radius: -species does not list other; see -help"}},
        {"-end_time 1", {"nearest known: -time_end"}},
        {"-viscosity 1", {"nearest known: -fluid_viscosity"}},
        {"-dt 1", {"unknown option -dt; see -help"}},
@@ -39,7 +41,7 @@ TEST(OptionRefusals, WhatThereIsNot) {
        {"-cell_law casson", {"-cell_law", "\"casson\" is not supported: the fluid is Newtonian", "one of neo_hookean"}},
        {"-cell_law power_law", {"-cell_law", "\"power law\" is not supported: the fluid is Newtonian", read}},
        {"-cell_law skalak",
-        {"-cell_law", "\"skalak\" is a law of membranes: -NAME_law membrane with -NAME_membrane skalak"}},
+        {"-cell_law", "\"skalak\" is a law of membranes: -NAME_law membrane with -NAME_membrane_law skalak"}},
        {"-vec_type cuda", {"-vec_type: \"cuda\" runs on graphics processors; accepted: types that run on processors"}},
        {"-dm_mat_type aijcusparse", {"-dm_mat_type", "graphics processors"}},
        {"-cell_torque 1,0,0", {"\"torque\" is not supported", "-NAME_law rigid", read}},
@@ -49,7 +51,44 @@ TEST(OptionRefusals, WhatThereIsNot) {
        {"-density 1", {"nearest known: -fluid_density"}},
        {"-surface_tension 1", {"nearest known: -cell_surface_tension"}},
        {"-fluid_viscosty 1", {"nearest known: -fluid_viscosity"}},
-       {"-wall_top_velocity 1,0,0", {"nearest known: -wall_"}}});
+       {"-boundary_top_velocity 1,0,0", {"nearest known: -boundary_"}}});
+}
+
+// Former names are refused with the present one.
+TEST(OptionRefusals, FormerNames) {
+  expect_refusals({{"-wall_ymax_velocity 1,0,0",
+                    {"unknown option -wall_ymax_velocity: it is now called "
+                     "-boundary_ymax_velocity; docs/options.md lists all former names"}},
+                   {"-inflow_zmin_feeder 3", {"it is now called -boundary_zmin_generator_length"}},
+                   {"-pressure_xmax_table f.csv", {"it is now called -boundary_xmax_pressure"}},
+                   {"-body_force_frequency 1", {"it is now called -body_force_angular_frequency"}},
+                   {"-Cell_body_force_frequency 1", {"it is now called -Cell_body_force_angular_frequency"}},
+                   {"-cell_angular_velocity_frequency 1", {"called -cell_angular_velocity_angular_frequency"}},
+                   {"-cell_membrane skalak", {"it is now called -cell_membrane_law"}},
+                   {"-acm_memory 1", {"it is now called -acm_search_directions"}},
+                   {"-balance", {"it is now called -load_balance"}}});
+  const std::string help = help_markdown(), former = "\n## Former names\n";
+  ASSERT_NE(help.find(former), std::string::npos);
+  const std::string present = help.substr(0, help.find(former));
+  for (const RenamedOption &option : renamed_options()) {
+    EXPECT_NE(present.find("| `-" + option.now + "` |"), std::string::npos) << option.now;
+    EXPECT_EQ(present.find("`-" + option.former + "`"), std::string::npos) << option.former;
+  }
+}
+
+// A word instead of 0, which means the same.
+TEST(OptionRefusals, WordsForZero) {
+  for (const char *pair : {"-time_step auto 0", "-time_steps_max unlimited 0", "-snapshot_interval off 0",
+                           "-guard_cfl off 0", "-ranks auto 0", "-da_processors_x auto 0", "-guard_memory off 0"}) {
+    const Words given = words(pair);
+    const ParseResult word = parse_line(scene + " " + given[0] + " " + given[1]),
+                      zero = parse_line(scene + " " + given[0] + " " + given[2]);
+    EXPECT_EQ(word.error, "");
+    EXPECT_EQ(options_text(word), options_text(zero));
+    EXPECT_NE(options_text(zero).find("\n" + given[0] + " " + given[1] + "\n"), std::string::npos) << pair;
+  }
+  expect_refusals({{"-time_step off", {"-time_step", "auto, or a number > 0"}},
+                   {"-guard_cfl auto", {"-guard_cfl", "off, or a number > 0"}}});
 }
 
 TEST(OptionRefusals, PetscIsSilentAfterAnError) {
@@ -65,7 +104,7 @@ TEST(OptionRefusals, Duplicates) {
 }
 
 TEST(OptionRefusals, MissingValues) {
-  expect_refusals({{"-time_step", {"-time_step", "a value is missing", "a number >= 0"}},
+  expect_refusals({{"-time_step", {"-time_step", "a value is missing", "auto, or a number > 0"}},
                    {"-time_step -check_only", {"-time_step", "a value is missing"}},
                    {"-output_dir", {"-output_dir", "a value is missing"}}});
   Words list = words(scene);
@@ -117,8 +156,8 @@ TEST(OptionRefusals, Numbers) {
                    {"-time_steps_max 1e3", {"not an integer"}},
                    {"-time_steps_max 99999999999999999999", {"does not fit"}},
                    {"-da_processors_x 4294967297", {"-da_processors_x", "does not fit"}},
-                   {"-wall_ymin_velocity nan,0,0", {"-wall_ymin_velocity", "not finite"}},
-                   {"-wall_ymin_velocity -inf,0,0", {"-wall_ymin_velocity", "not finite"}}});
+                   {"-boundary_ymin_velocity nan,0,0", {"-boundary_ymin_velocity", "not finite"}},
+                   {"-boundary_ymin_velocity -inf,0,0", {"-boundary_ymin_velocity", "not finite"}}});
 }
 
 TEST(OptionRefusals, Ranges) {
@@ -129,7 +168,7 @@ TEST(OptionRefusals, Ranges) {
                    {"-series_interval -1", {"-series_interval", "out of range"}},
                    {"-da_processors_x -1", {"-da_processors_x", "out of range"}},
                    {"-cell_initial_stretch 1,0,1", {"-cell_initial_stretch", "out of range"}},
-                   {"-wall_ymin_frequency -1", {"-wall_ymin_frequency", "out of range"}},
+                   {"-boundary_ymin_angular_frequency -1", {"-boundary_ymin_angular_frequency", "out of range"}},
                    {"-method slow", {"-method", "\"slow\"", "classic"}},
                    {"-pressure_solver ACM", {"-pressure_solver", "one of acm, smac, ksp"}},
                    {"-fluid_inertia maybe", {"-fluid_inertia", "true or false"}},
@@ -180,12 +219,12 @@ TEST(OptionRefusals, SpeciesNames) {
 
 TEST(OptionRefusals, InconsistentScenes) {
   expect_refusals(
-      {{"-wall_ymin_velocity 0,1,0", {"-wall_ymin_velocity", "normal"}},
-       {"-wall_xmin_velocity 0,1,0", {"-wall_xmin_velocity", "-boundary_x wall"}},
-       {"-wall_xmax_frequency 1", {"-wall_xmax_frequency", "-boundary_x wall"}},
-       {"-boundary_xmin wall", {"-boundary_xmin", "one side alone cannot be periodic", "-boundary_xmax"}},
+      {{"-boundary_ymin_velocity 0,1,0", {"-boundary_ymin_velocity", "normal"}},
+       {"-boundary_xmin_velocity 0,1,0", {"-boundary_xmin_velocity", "-boundary_x wall"}},
+       {"-boundary_xmax_angular_frequency 1", {"-boundary_xmax_angular_frequency", "-boundary_x wall"}},
+       {"-boundary_xmin wall", {"-boundary_xmin", "a single boundary cannot be periodic", "-boundary_xmax"}},
        {"-boundary_xmin periodic", {"-boundary_xmin", "one of same, wall, symmetry"}},
-       {"-boundary_ymin symmetry -wall_ymin_velocity 1,0,0", {"-wall_ymin_velocity", "-boundary_y wall"}},
+       {"-boundary_ymin symmetry -boundary_ymin_velocity 1,0,0", {"-boundary_ymin_velocity", "-boundary_y wall"}},
        {"-boundary_ymax symmetry -initial_velocity couette", {"-initial_velocity", "-boundary_y wall"}},
        {"-initial_velocity_amplitude 2", {"-initial_velocity_amplitude", "-initial_velocity"}},
        {"-pressure_pc_type mg", {"-pressure_pc_type", "-pressure_solver ksp"}},
@@ -237,12 +276,13 @@ TEST(OptionRefusals, InconsistentScenes) {
       {{"-a_law rubber", {"-a_law", "neo_hookean, mooney_rivlin"}},
        {"-a_law membrane", {"-a_surface_shear_modulus", "must be given"}},
        {"-a_law membrane -a_surface_shear_modulus 0", {"-a_surface_shear_modulus", "> 0"}},
-       {"-a_law membrane -a_surface_shear_modulus 1 -a_area_modulus -1", {"-a_area_modulus", ">= 0"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_skalak_c -1", {"-a_skalak_c", ">= 0"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -method classic", {"-a_law", "-method fast"}},
-       {"-a_law membrane -a_surface_shear_modulus 1 -a_attached true", {"-a_law", "a closed surface"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_anchored true", {"-a_law", "a closed surface"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_shear_modulus 1", {"-a_shear_modulus", "neo_hookean"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_force -1", {"-a_stretch_force", ">= 0"}},
-       {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_volume .6", {"-a_stretch_volume", "> 0 and <= 0.5"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_volume_fraction .6",
+        {"-a_stretch_volume_fraction", "> 0 and <= 0.5"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_force 1 -body_series false",
         {"-a_stretch_force", "-body_series true"}},
        {"-a_shear_modulus 1 -a_stretch_force 1", {"-a_stretch_force", "-a_law membrane or red_cell"}},
@@ -254,8 +294,8 @@ TEST(OptionRefusals, InconsistentScenes) {
        {"-a_law rigid -a_initial_stretch 2,1,1", {"-a_initial_stretch", "-a_law neo_hookean or"}},
        {"-a_law rigid -a_velocity 1,0,0 -method classic", {"-a_velocity", "-method fast"}},
        {"-a_shear_modulus 1 -a_angular_velocity 1,0,0", {"-a_angular_velocity", "-a_law rigid"}},
-       {"-a_shear_modulus 1 -a_membrane skalak", {"-a_membrane", "-a_law membrane or red_cell"}},
-       {"-a_law membrane -a_surface_shear_modulus 1 -a_area_modulus 1", {"-a_area_modulus", "-a_membrane skalak"}},
+       {"-a_shear_modulus 1 -a_membrane_law skalak", {"-a_membrane_law", "-a_law membrane or red_cell"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_skalak_c 1", {"-a_skalak_c", "-a_membrane_law skalak"}},
        {"-a_law mooney_rivlin", {"-a_c1", "must be given"}},
        {"-a_law mooney_rivlin -a_c1 -1", {"-a_c1", "out of range"}},
        {"-a_law mooney_rivlin -a_c1 1 -a_shear_modulus 2", {"-a_shear_modulus", "-a_law neo_hookean"}},
@@ -272,7 +312,7 @@ TEST(OptionRefusals, TwoDimensions) {
        {"-boundary_zmin wall -boundary_zmax symmetry", {"-boundary_z", "more than one cell"}},
        {"-body_force 0,0,1", {"-body_force", "2-D"}},
        {"-species a -a_shape sphere -a_radius .2 -a_shear_modulus 1 -a_body_force 0,0,1", {"-a_body_force", "2-D"}},
-       {"-wall_ymin_velocity 0,0,1", {"-wall_ymin_velocity", "2-D"}},
+       {"-boundary_ymin_velocity 0,0,1", {"-boundary_ymin_velocity", "2-D"}},
        {"-initial_velocity_mean 0,0,1", {"-initial_velocity_mean", "2-D"}},
        {"-initial_velocity shear_wave_xz", {"-initial_velocity", "more than one cell"}},
        {"-initial_velocity taylor_green_3d", {"-initial_velocity", "more than one cell"}},
@@ -300,7 +340,7 @@ TEST(OptionRefusals, ErrorsNameTheirSource) {
   EXPECT_NE(error("-body_force 1, 2, 3\n").find(":1)"), std::string::npos);
   EXPECT_NE(error("-output_dir \"a\n").find("quote"), std::string::npos);
   EXPECT_NE(error("-help\n").find("only on the command line"), std::string::npos);
-  EXPECT_NE(error("-wall_xmin_velocity 0,1,0\n-time_end 1\n").find(":1)"), std::string::npos);
+  EXPECT_NE(error("-boundary_xmin_velocity 0,1,0\n-time_end 1\n").find(":1)"), std::string::npos);
   EXPECT_NE(parse_line("-time_end 1", "-time_step x").error.find("in PETSC_OPTIONS"), std::string::npos);
   EXPECT_EQ(parse({"-x\ny"}).error.find('\n'), std::string::npos);
 }

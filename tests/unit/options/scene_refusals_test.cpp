@@ -1,4 +1,5 @@
-// Sides and rigid bodies that do not make a scene are refused in one line that names the option and what is accepted.
+// Boundaries and rigid bodies that do not make a valid scene are refused in one line that names the option and what is
+// accepted.
 #include "support/files.hpp"
 #include "support/refusals.hpp"
 
@@ -13,48 +14,58 @@ TEST(SceneRefusals, SidesThatVolumeCrosses) {
     std::ofstream(files / name) << text;
     return " " + files / name;
   };
-  const std::string in = "-boundary_xmin inflow -boundary_xmax ", way = in + "outflow -inflow_xmin_velocity 1 ";
+  const std::string in = "-boundary_xmin inflow -boundary_xmax ", way = in + "outflow -boundary_xmin_velocity 1 ";
   expect_refusals(
-      {{in + "outflow", {"-inflow_xmin_velocity: must be given", "-inflow_xmin_flow_rate"}},
-       {way + "-inflow_xmin_flow_rate 2", {"-inflow_xmin_flow_rate: given beside"}},
-       {in + "wall -inflow_xmin_velocity 1", {"-boundary_xmin: ", "no way out", "a pressure or outflow side"}},
-       {in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_velocity 1",
-        {"no way out", "-boundary_xmin, -boundary_xmax"}},
-       {in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_velocity -1 -inflow_xmax_frequency 2", {"no way out"}},
-       {"-boundary_xmin inflow", {"-boundary_xmin: one side alone"}},
-       {"-inflow_xmin_velocity 1", {"-inflow_xmin_velocity: has a meaning only with -boundary_xmin inflow"}},
-       {way + "-pressure_xmax_value 1", {"-pressure_xmax_value: has a meaning only with -boundary_xmax pressure"}},
-       {way + "-wall_xmin_velocity 0,1,0", {"-wall_xmin_velocity: has a meaning only with"}},
-       {way + "-inflow_xmin_profile nowhere", {"-inflow_xmin_profile: cannot read nowhere", "uniform, developed"}},
-       {way + "-inflow_xmin_profile" + file("short", "1 2 3\n"), {"has 3 numbers", "one per cell of the side"}},
-       {way + "-inflow_xmin_profile" + file("words", "1 two\n"), {"words line 1"}},
-       {in + "outflow -inflow_xmin_velocity nowhere", {"-inflow_xmin_velocity: cannot read nowhere"}},
-       {in + "outflow -inflow_xmin_velocity" + file("three", "0,1,2\n"), {"a row has 3 numbers", "time,value"}},
-       {in + "outflow -inflow_xmin_velocity" + file("back", "0,1\n0,2\n"), {"does not come after", "ascending"}},
-       {in + "outflow -inflow_xmin_frequency 1 -inflow_xmin_velocity" + file("table", "0,1\n1,2\n"),
-        {"-inflow_xmin_frequency: has no meaning beside a table"}},
-       {in + "outflow -inflow_xmin_velocity" + file("short_table", "0,1\n.5,1\n"),
-        {"short_table goes from time 0 to 0.5, the run from 0 to 2", "-inflow_xmin_period", "-inflow_xmin_hold true"}},
-       {in + "outflow -inflow_xmin_velocity" + file("late", ".1,1\n1,1\n"), {"late goes from time 0.1 to 1"}},
-       {in + "outflow -inflow_xmin_period 2 -inflow_xmin_hold true -inflow_xmin_velocity " + files / "table",
-        {"-inflow_xmin_hold: given beside -inflow_xmin_period"}},
-       {in + "outflow -inflow_xmin_period .75 -inflow_xmin_velocity " + files / "table",
-        {"-inflow_xmin_period: 0.75 is shorter than the table", "accepted: 1 or longer"}},
-       {in + "outflow -inflow_xmin_period 1 -inflow_xmin_velocity " + files / "table",
-        {"-inflow_xmin_period: the table ends with 2 and begins again with 1"}},
-       {way + "-inflow_xmin_period 1", {"-inflow_xmin_period: has no meaning without a table"}},
-       {way + "-inflow_xmin_hold true", {"-inflow_xmin_hold: has no meaning without a table"}},
-       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table " + files / "short_table",
-        {"-pressure_xmax_table: ", "short_table goes from", "-pressure_xmax_period"}},
-       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_table nowhere", {"-pressure_xmax_table: cannot read"}},
-       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,0,2 -pressure_xmax_windkessel_start 1",
-        {"-pressure_xmax_windkessel_start: there is no capacity"}},
-       {in + "pressure -inflow_xmin_velocity 1 -pressure_xmax_windkessel 1,1,2 -pressure_xmax_resistance 1",
-        {"-pressure_xmax_resistance: given beside"}}});
+      {{in + "outflow", {"-boundary_xmin_velocity: must be given", "-boundary_xmin_flow_rate"}},
+       {way + "-boundary_xmin_flow_rate 2", {"-boundary_xmin_flow_rate: given beside"}},
+       {in + "wall -boundary_xmin_velocity 1", {"-boundary_xmin: ", "cannot leave", "a pressure or outflow boundary"}},
+       {in + "inflow -boundary_xmin_velocity 1 -boundary_xmax_velocity 1",
+        {"cannot leave", "-boundary_xmin, -boundary_xmax"}},
+       {in + "inflow -boundary_xmin_velocity 1 -boundary_xmax_velocity -1 -boundary_xmax_angular_frequency 2",
+        {"cannot leave"}},
+       {"-boundary_xmin inflow", {"-boundary_xmin: a single boundary"}},
+       {"-boundary_xmin_velocity 1",
+        {"-boundary_xmin_velocity: applies only with -boundary_xmin wall or inflow, or -boundary_x wall"}},
+       {way + "-boundary_xmax_pressure 1", {"-boundary_xmax_pressure: applies only with -boundary_xmax pressure"}},
+       {in + "outflow -boundary_xmin_velocity 0,1,0", {"-boundary_xmin_velocity: cannot read 0,1,0"}},
+       {way + "-boundary_ymin wall -boundary_ymax wall -boundary_ymin_velocity 1",
+        {"-boundary_ymin_velocity: ", "accepted: for a wall 3 numbers"}},
+       {way + "-boundary_xmin_profile nowhere", {"-boundary_xmin_profile: cannot read nowhere", "uniform, developed"}},
+       {way + "-boundary_xmin_profile" + file("short", "1 2 3\n"), {"has 3 numbers", "one per cell of the boundary"}},
+       {way + "-boundary_xmin_profile" + file("words", "1 two\n"), {"words line 1"}},
+       {in + "outflow -boundary_xmin_velocity nowhere", {"-boundary_xmin_velocity: cannot read nowhere"}},
+       {in + "outflow -boundary_xmin_velocity" + file("three", "0,1,2\n"), {"a row has 3 numbers", "time,value"}},
+       {in + "outflow -boundary_xmin_velocity" + file("back", "0,1\n0,2\n"), {"does not come after", "ascending"}},
+       {in + "outflow -boundary_xmin_angular_frequency 1 -boundary_xmin_velocity" + file("table", "0,1\n1,2\n"),
+        {"-boundary_xmin_angular_frequency: does not apply to a table"}},
+       {in + "outflow -boundary_xmin_velocity" + file("short_table", "0,1\n.5,1\n"),
+        {"short_table goes from time 0 to 0.5, the run from 0 to 2", "-boundary_xmin_table_period",
+         "-boundary_xmin_table_hold true"}},
+       {in + "outflow -boundary_xmin_velocity" + file("late", ".1,1\n1,1\n"), {"late goes from time 0.1 to 1"}},
+       {in + "outflow -boundary_xmin_table_period 2 -boundary_xmin_table_hold true -boundary_xmin_velocity " +
+            files / "table",
+        {"-boundary_xmin_table_hold: given beside -boundary_xmin_table_period"}},
+       {in + "outflow -boundary_xmin_table_period .75 -boundary_xmin_velocity " + files / "table",
+        {"-boundary_xmin_table_period: 0.75 is shorter than the table", "accepted: 1 or longer"}},
+       {in + "outflow -boundary_xmin_table_period 1 -boundary_xmin_velocity " + files / "table",
+        {"-boundary_xmin_table_period: the table ends with 2 and begins again with 1"}},
+       {way + "-boundary_xmin_table_period 1", {"-boundary_xmin_table_period: applies only to a table"}},
+       {way + "-boundary_xmin_table_hold true", {"-boundary_xmin_table_hold: applies only to a table"}},
+       {in + "pressure -boundary_xmin_velocity 1 -boundary_xmax_pressure " + files / "short_table",
+        {"-boundary_xmax_pressure: ", "short_table goes from", "-boundary_xmax_table_period"}},
+       {in + "pressure -boundary_xmin_velocity 1 -boundary_xmax_pressure nowhere",
+        {"-boundary_xmax_pressure: cannot read"}},
+       {in + "pressure -boundary_xmin_velocity 1 -boundary_xmax_windkessel 1,0,2 "
+             "-boundary_xmax_windkessel_initial_pressure 1",
+        {"-boundary_xmax_windkessel_initial_pressure: the Windkessel has no capacitance"}},
+       {in + "pressure -boundary_xmin_velocity 1 -boundary_xmax_windkessel 1,1,2 -boundary_xmax_resistance 1",
+        {"-boundary_xmax_resistance: given beside"}}});
   EXPECT_EQ(parse_line(scene + " " + way).error, "");
-  for (const char *end : {"-inflow_xmin_hold true", "-inflow_xmin_period .5", "-inflow_xmin_period .7"})
-    EXPECT_EQ(parse_line(scene + " " + in + "outflow -inflow_xmin_velocity " + files / "short_table " + end).error, "");
-  EXPECT_EQ(parse_line(scene + " " + in + "inflow -inflow_xmin_velocity 1 -inflow_xmax_flow_rate -64").error, "");
+  for (const char *end :
+       {"-boundary_xmin_table_hold true", "-boundary_xmin_table_period .5", "-boundary_xmin_table_period .7"})
+    EXPECT_EQ(parse_line(scene + " " + in + "outflow -boundary_xmin_velocity " + files / "short_table " + end).error,
+              "");
+  EXPECT_EQ(parse_line(scene + " " + in + "inflow -boundary_xmin_velocity 1 -boundary_xmax_flow_rate -64").error, "");
 }
 
 // At every time of the run, not only at rows of a table or at eighths of a period.
@@ -64,26 +75,31 @@ TEST(SceneRefusals, InflowSidesThatDoNotCancel) {
     std::ofstream(files / name) << text;
     return " " + files / name + " ";
   };
-  const std::string in = "-boundary_xmin inflow -boundary_xmax inflow ", one = "-inflow_xmin_velocity ",
-                    two = "-inflow_xmax_velocity ";
+  const std::string in = "-boundary_xmin inflow -boundary_xmax inflow ", one = "-boundary_xmin_velocity ",
+                    two = "-boundary_xmax_velocity ";
   const std::string beat = file("beat", "0,0\n.1,1\n.2,0\n"), back = file("back", "0,0\n.1,-1\n.2,0\n"),
                     twice = file("twice", "0 0\n.1 -1\n.2 0\n.3 -1\n.4 0"),
                     other = file("other", "0 0\n.1 -1\n.2 0\n.3 -1.5\n.4 0");
   expect_refusals(
-      {{in + one + "1 -inflow_xmin_frequency 1 " + two + "-1 -inflow_xmax_frequency 9",
-        {"up to 64 volume/time comes in at the angular frequency 1", "no way out", "at every time"}},
-       {in + one + beat + "-inflow_xmin_period .2 " + two + back + "-inflow_xmax_hold true", {"at time 0.3"}},
-       {in + one + beat + "-inflow_xmin_period .2 " + two + back + "-inflow_xmax_period .25", {"no way out"}},
-       {in + one + beat + "-inflow_xmin_period .2 " + two + other + "-inflow_xmax_period .4", {"-32", "at time 0.3"}},
-       {in + one + beat + "-inflow_xmin_hold true " + two + "0 -inflow_xmax_frequency 1",
+      {{in + one + "1 -boundary_xmin_angular_frequency 1 " + two + "-1 -boundary_xmax_angular_frequency 9",
+        {"up to 64 volume/time enters at the angular frequency 1", "cannot leave", "at every time"}},
+       {in + one + beat + "-boundary_xmin_table_period .2 " + two + back + "-boundary_xmax_table_hold true",
+        {"at time 0.3"}},
+       {in + one + beat + "-boundary_xmin_table_period .2 " + two + back + "-boundary_xmax_table_period .25",
+        {"cannot leave"}},
+       {in + one + beat + "-boundary_xmin_table_period .2 " + two + other + "-boundary_xmax_table_period .4",
+        {"-32", "at time 0.3"}},
+       {in + one + beat + "-boundary_xmin_table_hold true " + two + "0 -boundary_xmax_angular_frequency 1",
         {"64 volume/time", "time 0.1"}},
-       {in + one + beat + "-inflow_xmin_period .2 " + two + "-1 -inflow_xmax_frequency 31.41592653589793",
-        {"no way out"}}});
-  for (const std::string &fine : {one + "1 -inflow_xmin_frequency 7 -inflow_xmin_phase .3 " + two +
-                                      "-1 -inflow_xmax_frequency 7 -inflow_xmax_phase .3",
-                                  one + beat + "-inflow_xmin_period .2 " + two + back + "-inflow_xmax_period .2",
-                                  one + beat + "-inflow_xmin_period .2 " + two + twice + "-inflow_xmax_period .4",
-                                  one + beat + "-inflow_xmin_hold true " + two + back + "-inflow_xmax_hold true"})
+       {in + one + beat + "-boundary_xmin_table_period .2 " + two +
+            "-1 -boundary_xmax_angular_frequency 31.41592653589793",
+        {"cannot leave"}}});
+  for (const std::string &fine :
+       {one + "1 -boundary_xmin_angular_frequency 7 -boundary_xmin_phase .3 " + two +
+            "-1 -boundary_xmax_angular_frequency 7 -boundary_xmax_phase .3",
+        one + beat + "-boundary_xmin_table_period .2 " + two + back + "-boundary_xmax_table_period .2",
+        one + beat + "-boundary_xmin_table_period .2 " + two + twice + "-boundary_xmax_table_period .4",
+        one + beat + "-boundary_xmin_table_hold true " + two + back + "-boundary_xmax_table_hold true"})
     EXPECT_EQ(parse_line(scene + " " + in + fine).error, "") << fine;
 }
 
@@ -96,13 +112,13 @@ TEST(SceneRefusals, RigidBodiesThatMove) {
        {"-a_shape ellipsoid -a_semi_axes .1,.2,.45 -grid_length 1,.8,1 -a_angular_velocity 3,0,0",
         {"-a_angular_velocity", "from its centre along y", "accepted: below 0.4"}},
        {"-a_shape ellipsoid -a_semi_axes .1,.2,.4 -a_angular_velocity 0,1,0 -boundary_x wall",
-        {"-a_angular_velocity: turns a body to x = 0.1", "accepted: a path between 0.25 and 0.75"}},
+        {"-a_angular_velocity: rotates a body to x = 0.1", "accepted: a path between 0.25 and 0.75"}},
        {"-a_shape ellipsoid -a_semi_axes .1,.2,.1 -a_angular_velocity 0,1,0 -method classic",
-        {"-a_angular_velocity", "or turns there"}},
+        {"-a_angular_velocity", "or rotates through the grid"}},
        {"-a_shape slab -a_interval .3,.5 -a_axis y -a_velocity 0,1,0 -boundary_y wall",
-        {"-a_velocity", "has no way out"}},
+        {"-a_velocity", "cannot leave"}},
        {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
-        {"-a_velocity", "sides of the box"}}},
+        {"-a_velocity", "boundaries of the box"}}},
       "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");
 }
 
@@ -112,16 +128,16 @@ TEST(SceneRefusals, PathsOfRigidBodies) {
       "-a_radius .1 -a_centre .3,.4,.5 -b_law rigid -b_shape cylinder -b_axis z -b_radius .1 "
       "-b_centre .7,.7,.5 ";
   EXPECT_EQ(parse_line(ball + "-a_velocity 1,.1,.3").error, "");  // past it, and across the sides
-  EXPECT_EQ(parse_line(ball + "-a_velocity 0,1,0 -a_velocity_frequency 10").error, "");
+  EXPECT_EQ(parse_line(ball + "-a_velocity 0,1,0 -a_velocity_angular_frequency 10").error, "");
   expect_refusals(
       {{"-a_velocity 0,.5,0", {"-a_velocity", "carries a body to y = 1", "accepted: a path between 0.1 and 0.9"}},
        {"-a_velocity 0,-.25,0", {"-a_velocity", "carries a body to y = 0.05"}},
-       {"-a_velocity 0,2,0 -a_velocity_frequency 9", {"-a_velocity", "carries a body to y = 0.0777"}},
+       {"-a_velocity 0,2,0 -a_velocity_angular_frequency 9", {"-a_velocity", "carries a body to y = 0.0777"}},
        {"-a_velocity .6,.35,0",
         {"-a_velocity", "carries a body to one of b at t = 0.", "accepted: a path with a cell"}},
        {"-a_velocity .5,.35,0 -b_velocity -.1,0,0", {"-a_velocity", "carries a body to one of b at t = 0."}},
        {"-a_velocity .1,0,0 -method classic", {"-a_velocity", "-method fast"}},
-       {"-a_velocity .1,0,0 -acm_sweeps_max 1 -acm_memory 0 -acm_coarse false",
-        {"-a_velocity", "-acm_sweeps_max > 1"}}},
+       {"-a_velocity .1,0,0 -acm_iterations_max 1 -acm_search_directions 0 -acm_coarse false",
+        {"-a_velocity", "-acm_iterations_max > 1"}}},
       ball);
 }

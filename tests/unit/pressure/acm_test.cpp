@@ -1,4 +1,4 @@
-// (12) against brute force, its guards, and what one step of the solver does to the divergence.
+// (12) against a search for the minimum, its guards, and the divergence after one step of the solver.
 #include "pressure/acm.hpp"
 #include "flow/projection.hpp"
 
@@ -45,7 +45,7 @@ struct Line {
   }
 };
 
-// The least value of J on kappa in [low, high] for every g of a grid, refined around the best.
+// The least J for kappa in [low, high] at every g of a grid that is refined around the best value.
 std::array<double, 2> search(const Line &line, double g_least) {
   std::array<double, 2> best{0, std::max(0.0, g_least)};
   double step = 0.5;
@@ -148,7 +148,7 @@ struct CellBlock {
 
 class AcmStep : public ::testing::TestWithParam<CellBlock> {};
 
-// From a random v*, the new velocity's divergence is what (12) promises, and the new pressure has no mean.
+// From a random v*, the divergence of the new velocity is as (12) predicts, and the new pressure has no mean.
 TEST_P(AcmStep, ReachesThePredictedResidual) {
   GridSpec spec = uneven_box(GetParam().flat, {18, 9, 7});
   for (int d = 0; d < 3; ++d)
@@ -181,7 +181,7 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   centre_ghosts(p);
   ASSERT_EQ(compute_divergence(domain, density, velocity, D), 0);
   centre_ghosts(D);
-  // D + kappa lap D + g lap p for the coefficients that the solver reports.
+  // D + kappa lap D + g lap p with the coefficients that the solver reports.
   Field predicted(domain, 1), lap_D(domain, 1), lap_p(domain, 1);
   double second[3];
   for (int d = 0; d < 3; ++d) second[d] = 1 / (domain.spacing()[d] * domain.spacing()[d]);
@@ -225,7 +225,7 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
     for (int i = 0; i < row.i_end; ++i) mean += p[0](i, row.j, row.k) / domain.domain_cell_count();
   EXPECT_NEAR(mean, 0, 1e-12 * (1 + GetParam().pressure));
 
-  // The ghosts come out right without an exchange.
+  // The ghosts are right without an exchange.
   Field fresh(domain, 1);
   std::copy(p.data(), p.data() + p.layout().size, fresh.data());
   centre_ghosts(fresh);

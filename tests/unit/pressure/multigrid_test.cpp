@@ -1,4 +1,5 @@
-// The V-cycle: its transfers, that it is linear, sweeps that do not grow with the grid, and the least squares.
+// The V-cycle: its transfers, its linearity, a number of iterations that does not grow with the grid, and the least
+// squares.
 #include "pressure/acm_sweeps.hpp"
 #include "support/poisson_scene.hpp"
 
@@ -19,9 +20,9 @@ GridSpec box(const Int3 &cells, const Real3 &length, bool x, bool y, bool z) {
 }
 
 struct Convergence {
-  int sweeps = 0;     // to 1e-4
-  double first = 0;   // what the first sweep leaves
-  double factor = 0;  // mean of the sweeps after it, to 1e-8
+  int sweeps = 0;     // iterations to 1e-4
+  double first = 0;   // residual after the first iteration
+  double factor = 0;  // mean factor of later iterations, to 1e-8
 };
 
 Convergence convergence(const GridSpec &spec) {
@@ -81,7 +82,7 @@ TEST(Multigrid, SweepsDoNotGrowWithTheGrid) {
   }
 }
 
-// Slower where a last cell is odd, but bounded.
+// Convergence is slower with an odd last cell, but bounded.
 TEST(Multigrid, OddCellsAndUnequalSpacings) {
   for (const int n : {31, 33, 63, 65, 127, 129, 101})
     for (const bool wall : {false, true}) EXPECT_LE(show(box({n, n, 1}, {1, 1, 1}, wall, wall, false)).factor, 0.25);
@@ -149,7 +150,7 @@ TEST(Multigrid, TransfersAreConservativeAndLinear) {
       for (std::size_t i = 0; i < width.size(); ++i) {
         const double centre = edge + width[i] / 2, at = coarse_centre[line.parent[i]];
         edge += width[i];
-        // Beyond the outermost centres and at a single cell there is nobody to interpolate from.
+        // Beyond the outermost centres and at a single cell there is no neighbour to interpolate from.
         const bool inside = centre >= coarse_centre[0] && centre <= coarse_centre[cells - 1];
         if (inside) {
           EXPECT_NEAR(at + line.share[i] * (coarse_centre[line.neighbour[i]] - at), centre, 1e-12 * n);
@@ -163,9 +164,9 @@ TEST(Multigrid, TransfersAreConservativeAndLinear) {
   }
 }
 
-// Against the normal equations of small vectors, solved by hand or known by construction.
+// Comparison with normal equations of small vectors, solved by hand or known by construction.
 TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
-  SweepSums s;
+  LeastSquaresSums s;
   s.directions = 2;  // L_0 = (1, 0, 0), L_1 = (1, 2, 0), D = (3, 4, 5) = 1 L_0 + 2 L_1 + (0, 0, 5)
   s.square = 50;
   s.with[0] = 3;
@@ -173,7 +174,7 @@ TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
   s.product[0][0] = 1;
   s.product[1][0] = 1;
   s.product[1][1] = 5;
-  SweepMinimum m = minimise(s);
+  LeastSquaresSolution m = minimise(s);
   EXPECT_DOUBLE_EQ(m.coefficient[0], 1);
   EXPECT_DOUBLE_EQ(m.coefficient[1], 2);
   EXPECT_DOUBLE_EQ(m.square, 25);
@@ -188,7 +189,7 @@ TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
   EXPECT_EQ(m.coefficient[2], 0);
   EXPECT_DOUBLE_EQ(m.square, 25);
 
-  SweepSums zero_first;
+  LeastSquaresSums zero_first;
   zero_first.directions = 2;
   zero_first.square = 9;
   zero_first.with[1] = 6;
@@ -199,7 +200,7 @@ TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
   EXPECT_GT(m.square, 0);  // exactly solved, but never trusted beyond the rounding of the sums
   EXPECT_LE(m.square, 9e-14 * 1.001);
 
-  m = minimise(SweepSums{});
+  m = minimise(LeastSquaresSums{});
   EXPECT_EQ(m.coefficient[0], 0);
   EXPECT_EQ(m.square, 0);
   s.square = std::nan("");
@@ -209,8 +210,8 @@ TEST(Minimise, FindsTheLeastSquaresAndItsGuards) {
   EXPECT_TRUE(std::isnan(minimise(s).coefficient[0]));
 }
 
-// However many ranks there are: whoever halves has two cells left of a direction that is shared, no rank ever holds
-// more cells than of the finest level, and what goes to every rank is small.
+// For any number of ranks: after halving, each rank has at least two cells of a direction that is shared; no rank ever
+// has more cells than on the finest level; and the level that goes to every rank is small.
 TEST(Multigrid, LevelsOnManyRanks) {
   int joined = 0;
   for (const auto &[cells, ranks] : {std::pair<Int3, int>{{24576, 5184, 5120}, 82944},

@@ -13,7 +13,7 @@ Partition planned(const Int3 &cells, const Int3 &ranks) {
   return Partition(Domain::planned(spec, ranks[0] * ranks[1] * ranks[2]));
 }
 
-// Every second rank stays, with the cells of two, the last with those of three.
+// Every second rank keeps cells, with those of two ranks, the last one with those of three.
 TEST(Partition, JoinsRanks) {
   const Partition once = planned({8, 16, 8}, {1, 5, 2}).joined({false, true, false});
   const Partition twice = once.joined({false, true, true});
@@ -32,7 +32,7 @@ TEST(Partition, JoinsRanks) {
   EXPECT_EQ(twice.ranks(), 10);
 }
 
-// Ranks begin at half of their first cells, rounded up, in the directions that are halved.
+// In directions that are halved, the first cell of each rank is half of its former one, rounded up.
 TEST(Partition, HasRanksWithoutCellsOnCoarseLevels) {
   const Partition fine = planned({8, 10, 6}, {1, 3, 2}), coarse = fine.coarse({8, 5, 3}),
                   last = coarse.coarse({8, 2, 1});

@@ -1,4 +1,4 @@
-// Where rigid bodies cut the faces of the velocity.
+// The faces of the velocity that rigid bodies contain or cut.
 #include "rigid/rigid_surfaces.hpp"
 #include "support/rigid_scene.hpp"
 
@@ -24,12 +24,12 @@ std::unique_ptr<RigidFaces> faces_of(Scene *scene, const GridSpec &grid, Species
   RigidBodies bodies(scene->domain, scene->solver.exchange());
   std::string wrong;
   EXPECT_EQ(bodies.add(spec, {{spec.centre, {}}}, 1, &phase, &wrong), 0);
-  EXPECT_EQ(bodies.place(0, 0), 0);
+  EXPECT_EQ(bodies.find_faces(0, 0), 0);
   return std::make_unique<RigidFaces>(bodies.faces());
 }
 
-// Every link that ends at the surface of a ball across two periodic sides ends on it; every face inside is in a run, no
-// other; and no cut face is stiffer than a regular one.
+// For a ball across two periodic boundaries, every link that ends at the surface ends on it, runs contain exactly the
+// faces inside, and no cut face is stiffer than a regular one.
 TEST(RigidFaces, LinksEndAtTheSurface) {
   Scene scene;
   GridSpec spec;
@@ -85,7 +85,7 @@ TEST(RigidFaces, LinksEndAtTheSurface) {
   EXPECT_GT(links, 300);
 }
 
-// Of a body from a file the surface is where phi, interpolated, is 1/2: exact of a plane along the grid.
+// The surface of a body from a file is where interpolated phi is 1/2, which is exact for a plane along the grid.
 TEST(RigidFaces, SurfaceOfAFile) {
   Scene scene;
   GridSpec spec;
@@ -107,7 +107,7 @@ TEST(RigidFaces, SurfaceOfAFile) {
   EXPECT_TRUE(found);
 }
 
-// In a box of fluid that goes with it, across all sides: nothing happens.
+// A body that moves with the fluid around it, across all boundaries of the box, has no load and disturbs nothing.
 TEST(TravellingBodies, FluidThatGoesAlongFeelsNothing) {
   Scene scene;
   GridSpec spec;
@@ -137,7 +137,7 @@ TEST(TravellingBodies, FluidThatGoesAlongFeelsNothing) {
   }
 }
 
-// Where a body is follows from the time alone, whatever was before; phi, too.
+// The position of a body depends on the time alone, not on earlier calls; the same holds for phi.
 TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
   Scene scene;
   GridSpec spec;
@@ -160,8 +160,8 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
     std::string wrong;
     ASSERT_EQ(bodies[n]->add(ball, {{ball.centre, {}}}, 1, &phases[n], &wrong), 0);
   }
-  for (const double before : {0., 0.1, 1.3, time}) ASSERT_EQ(bodies[0]->place(before, before - 0.1), 0);
-  ASSERT_EQ(bodies[1]->place(time, time - 0.1), 0);
+  for (const double before : {0., 0.1, 1.3, time}) ASSERT_EQ(bodies[0]->find_faces(before, before - 0.1), 0);
+  ASSERT_EQ(bodies[1]->find_faces(time, time - 0.1), 0);
   EXPECT_NEAR(bodies[0]->faces().bodies[13].centre[0], (0.3 + 0.8 * way - 0.8) / 0.1, 1e-9);
   int cuts = 0, runs = 0;
   for (int a = 0; a < 2; ++a)
@@ -190,7 +190,7 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
   EXPECT_NEAR(moment / sum, 0.3 + 0.8 * way, 1e-4);
 }
 
-// Two bodies of which one comes to the other.
+// Two bodies, one of which approaches the other.
 TEST(TravellingBodies, TouchingIsFound) {
   Scene scene;
   GridSpec spec;
@@ -213,15 +213,15 @@ TEST(TravellingBodies, TouchingIsFound) {
     std::string wrong;
     ASSERT_EQ(bodies.add(*species, {{species->centre, {}}}, 1, &phase, &wrong), 0);
   }
-  ASSERT_EQ(bodies.place(0.1, 0.1), 0);  // .3 apart
-  EXPECT_EQ(bodies.touching(), "");
+  ASSERT_EQ(bodies.find_faces(0.1, 0.1), 0);  // .3 apart
+  EXPECT_EQ(bodies.contact_message(), "");
   for (const double time : {0.39, 0.5}) {
-    ASSERT_EQ(bodies.place(time, time - 0.02), 0);
+    ASSERT_EQ(bodies.find_faces(time, time - 0.02), 0);
     for (const char *piece : {"-ball_velocity", "post and ball", "accepted: paths with fluid between"})
-      EXPECT_NE(bodies.touching().find(piece), std::string::npos) << bodies.touching();
+      EXPECT_NE(bodies.contact_message().find(piece), std::string::npos) << bodies.contact_message();
   }
-  ASSERT_EQ(bodies.place(0.1, 0.1), 0);
-  EXPECT_EQ(bodies.touching(), "");
+  ASSERT_EQ(bodies.find_faces(0.1, 0.1), 0);
+  EXPECT_EQ(bodies.contact_message(), "");
 }
 
 }  // namespace

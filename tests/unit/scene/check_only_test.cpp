@@ -52,7 +52,7 @@ TEST(CheckOnly, NumbersOfAChannel) {
     EXPECT_NE(drop.find(line), std::string::npos) << line << drop;
   EXPECT_EQ(viscous.find("capillary"), std::string::npos);
   const ParseResult forced = parse_line(scene + " -method classic -time_step 1 -check_only");
-  EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 breaks the viscous limit"), std::string::npos);
+  EXPECT_NE(check_report(forced.config, 1).find("warning: -time_step 1 exceeds the viscous limit"), std::string::npos);
   const ParseResult huge = parse_line("-time_end 1 -grid_cells 8192,8192,8192 -check_only");
   ASSERT_EQ(huge.error, "");
   EXPECT_EQ(check_report(huge.config, 1024).find("64-bit") != std::string::npos, sizeof(PetscInt) == 4);
@@ -75,11 +75,11 @@ TEST(CheckOnly, FlowThroughOpenSides) {
     EXPECT_EQ(result.error, "");
     return check_report(result.config, 1);
   };
-  const std::string fed = says("-boundary_xmin inflow -boundary_xmax outflow -inflow_xmin_velocity .5");
+  const std::string fed = says("-boundary_xmin inflow -boundary_xmax outflow -boundary_xmin_velocity .5");
   for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 2\n"})
     EXPECT_NE(fed.find(line), std::string::npos) << line << fed;
   // f = 8/4, U = f H^2/(8 nu), shear rate f H/(2 nu).
-  const std::string pushed = says("-boundary_xmin pressure -boundary_xmax pressure -pressure_xmin_value 8");
+  const std::string pushed = says("-boundary_xmin pressure -boundary_xmax pressure -boundary_xmin_pressure 8");
   for (const char *line : {"velocity scale (estimate): 1\n", "shear rate (estimate): 2\n"})
     EXPECT_NE(pushed.find(line), std::string::npos) << line << pushed;
 }
@@ -94,22 +94,21 @@ TEST(CheckOnly, WarnsOfBodiesThatMergeWhereTheInterfaceIsSharp) {
     for (const std::string &warning : scene_warnings(result.config)) text += warning + "\n";
     return text;
   };
-  const std::string merging =
-      "bodies of cell merge where they meet: boxes of their own, in which they stay separate, need ";
+  const std::string merging = "bodies of cell merge where they touch: to stay separate they need ";
   EXPECT_NE(warnings("-cell_shape cylinder -cell_count 2,1,1").find(merging + "-cell_shape sphere"), std::string::npos);
   for (const std::string &fine :
        {std::string("-cell_shape cylinder -cell_count 2,1,1 -cell_contact merge"),
         std::string("-cell_shape sphere -interface_scheme weno5 -cell_count 2,1,1"),
         std::string("-cell_shape sphere -method classic -cell_count 2,1,1"),
         std::string("-cell_shape sphere -cell_count 2,1,1"), std::string("-cell_shape cylinder -cell_count 1,1,1")})
-    EXPECT_EQ(warnings(fine).find("merge where they meet"), std::string::npos) << fine;
+    EXPECT_EQ(warnings(fine).find("merge where they touch"), std::string::npos) << fine;
 }
 
 // A tube of diameter 1.6: pi .64 = 2.0106 of 5.76, .3 of it, .3 1.6/1. Two channels of .5 and .2 at 16 cells per
 // length.
 TEST(CheckOnly, LumensOfSides) {
   const auto says = [](const std::string &options) {
-    const ParseResult result = parse_line("-time_end 1 -boundary_xmin inflow -inflow_xmin_velocity .3 " + options);
+    const ParseResult result = parse_line("-time_end 1 -boundary_xmin inflow -boundary_xmin_velocity .3 " + options);
     EXPECT_EQ(result.error, "");
     std::string text = check_report(result.config, 1);
     for (const std::string &warning : scene_warnings(result.config)) text += warning + "\n";
@@ -122,18 +121,20 @@ TEST(CheckOnly, LumensOfSides) {
       "-grid_cells 12,48,48 -grid_length .6,2.4,2.4 -boundary_xmax outflow -species v -v_shape tube -v_axis x -v_law "
       "rigid -v_radius .8 -v_centre 0,1.25,1.15 -fluid_viscosity 1");
   has(tube,
-      "\nside xmin: inflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity 0.3, flow rate "
+      "\nboundary xmin: inflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity 0.3, flow rate "
       "0.6032 into the box, Reynolds number of the lumen 0.48\n");
   has(tube,
-      "\nside xmax: outflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity -0.3, flow rate "
+      "\nboundary xmax: outflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity -0.3, flow "
+      "rate "
       "-0.6032 into the box, Reynolds number of the lumen 0.48\n");
   has(tube, "\nvelocity scale (estimate): 0.6\n");  // in the middle of a developed flow
   EXPECT_EQ(tube.find("boundary_x"), std::string::npos) << tube;
   const std::string two = says(
       "-grid_cells 16,16,1 -boundary_y wall -boundary_xmax pressure -species v -v_shape slab -v_axis y -v_interval "
-      ".2,.5 -v_law rigid -fluid_viscosity 1e-5 -inflow_xmin_frequency 1");
+      ".2,.5 -v_law rigid -fluid_viscosity 1e-5 -boundary_xmin_angular_frequency 1");
   has(two,
-      "\nside xmin: inflow, open length 0.7 of 1, 2 lumens, the widest 0.5 wide, 3.2 cells across the narrowest; mean "
+      "\nboundary xmin: inflow, open length 0.7 of 1, 2 lumens, the widest 0.5 wide, 3.2 cells across the narrowest; "
+      "mean "
       "velocity up to 0.3, flow rate up to 0.21 into the box, Reynolds number of the lumen up to 1.5e+04\n");
   for (const char *side : {"-boundary_xmin: ", "-boundary_xmax: "})
     for (const char *what : {"only 3.2 cells across the lumen", "Reynolds number 1.5e+04 of the lumen"})
@@ -141,13 +142,13 @@ TEST(CheckOnly, LumensOfSides) {
   // Planes of symmetry and periodic directions are no walls; where the flow leaves twice it is not known how.
   const std::string mirrored =
       says("-grid_cells 16,7,6 -boundary_ymin wall -boundary_ymax symmetry -boundary_xmax outflow");
-  has(mirrored, "\nside xmin: inflow, open area 1 of 1, lumen 2 wide, 14 cells across; mean velocity 0.3, ");
+  has(mirrored, "\nboundary xmin: inflow, open area 1 of 1, lumen 2 wide, 14 cells across; mean velocity 0.3, ");
   const std::string open = says("-grid_cells 16,8,6 -boundary_xmax outflow");
-  has(open, "\nside xmin: inflow, open area 1 of 1, no walls; mean velocity 0.3, flow rate 0.3 into the box\n");
+  has(open, "\nboundary xmin: inflow, open area 1 of 1, no walls; mean velocity 0.3, flow rate 0.3 into the box\n");
   const std::string forked =
       says("-grid_cells 16,16,1 -boundary_ymin wall -boundary_ymax pressure -boundary_xmax outflow");
   has(forked,
-      "\nside xmax: outflow, open length 1 of 1, lumen 2 wide, 32 cells across; the flow through it is unknown\n");
+      "\nboundary xmax: outflow, open length 1 of 1, lumen 2 wide, 32 cells across; the flow through it is unknown\n");
   const std::string nothing = says(
       "-grid_cells 16,16,1 -boundary_y wall -boundary_xmax outflow -species v -v_shape tube -v_axis x -v_radius .5 "
       "-v_law rigid");
@@ -156,27 +157,27 @@ TEST(CheckOnly, LumensOfSides) {
 
 TEST(CheckOnly, WhatCannotFlowIsRefused) {
   const std::string box = "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax outflow ",
-                    slab = "-species v -v_shape slab -v_law rigid ", flow = "-inflow_xmin_velocity 1 ";
+                    slab = "-species v -v_shape slab -v_law rigid ", flow = "-boundary_xmin_velocity 1 ";
   const auto refused = [](const std::string &options, const std::string &start) {
     for (const char *check : {"", " -check_only"})
       EXPECT_EQ(parse_line(options + check).error.rfind(start, 0), 0u) << options << parse_line(options).error;
   };
   refused(box + flow + slab + "-v_axis x -v_interval 0,.2",
-          "-boundary_xmin: inflow, but rigid bodies cover what would come in; accepted: ");
+          "-boundary_xmin: rigid bodies cover all of this inflow boundary; accepted: ");
   refused(box + flow + slab + "-v_axis x -v_interval .8,1",
-          "-boundary_xmax: rigid bodies cover all sides through which");
+          "-boundary_xmax: rigid bodies cover all boundaries through which");
   refused(box + flow + slab + "-v_axis y -v_interval 0,1",
           "-v_interval: the rigid slab fills all of the box and leaves no fluid; accepted: a part of 0,1");
   refused(
-      "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax inflow -inflow_xmin_velocity 1 "
-      "-inflow_xmax_velocity -1 " +
+      "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax inflow -boundary_xmin_velocity 1 "
+      "-boundary_xmax_velocity -1 " +
           slab + "-v_axis y -v_interval 0,.2",
-      "-inflow_xmin_velocity: rigid bodies cover a part of the side, and ");
+      "-boundary_xmin_velocity: rigid bodies cover a part of this boundary, and ");
   std::string numbers;  // where the profile is not 0 the side is closed
   for (int cell = 0; cell < 16; ++cell) numbers += cell < 4 ? "1\n" : "0\n";
   const TemporaryFile profile(numbers);
-  refused(box + "-inflow_xmin_profile " + profile.path() + " " + slab + "-v_axis y -v_interval 0,.5",
-          "-boundary_xmin: inflow, but rigid bodies cover");
+  refused(box + "-boundary_xmin_profile " + profile.path() + " " + slab + "-v_axis y -v_interval 0,.5",
+          "-boundary_xmin: rigid bodies cover all of this");
 }
 
 // Obstacles hold back the flow, bodies shear it: by how much does not follow from the options.

@@ -1,4 +1,5 @@
-// What the elastic stress takes from the flow and what the elastic energy gains, of every law; what stretches B.
+// Power of the elastic stress against the rate of the elastic energy, for every law, and the velocity differences that
+// stretch B.
 #include "diagnostics/energy_rates.hpp"
 #include "kernels/tensor.hpp"
 #include "kernels/upper_convected.hpp"
@@ -51,8 +52,8 @@ struct Exchange {
   double force = 0, stress = 0, energy = 0;  // power of the force, of the stress, rate of the energy
 };
 
-// Random B; phi random or uniform; v solenoidal. The energy is quadratic in B: a central difference is its rate.
-// `contrast`: viscosity of the solid over the fluid's.
+// Fields: random B, random or uniform phi, solenoidal v. The energy is quadratic in B, so that a central difference is
+// its exact rate. `contrast`: viscosity of the solid over that of the fluid.
 Exchange exchange_of(bool flat, const Material &material, bool uniform, double contrast) {
   Solid solid(flat, 0, 30);
   const Domain &domain = solid.domain;
@@ -93,8 +94,8 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform, double c
   return e;
 }
 
-// What the force takes from the flow is what the stress takes, whatever phi is, and what the energy gains: for c2 that
-// needs a uniform phi, as a symmetric stress cannot do it where phi changes.
+// The power of the force equals that of the stress for any phi, and the rate of the energy. For c2 this needs a uniform
+// phi, because no symmetric stress has this power where phi varies.
 TEST(ElasticExchange, PowerOfForceAndStressAndRateOfEnergy) {
   for (const bool flat : {false, true})
     for (const Material &material : {Material{0.9}, test::mooney_rivlin(0.7, 0, 0.3), rubber})
@@ -109,7 +110,7 @@ TEST(ElasticExchange, PowerOfForceAndStressAndRateOfEnergy) {
         }
 }
 
-// A rigid rotation turns B as it is, whatever the viscosities are.
+// A rigid rotation turns B without changing it otherwise, for any viscosities.
 TEST(ElasticExchange, RotationIsThatOfTheMixture) {
   for (const bool flat : {false, true}) {
     Solid solid(flat, 0, 20);

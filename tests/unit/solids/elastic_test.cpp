@@ -135,8 +135,8 @@ void trace_rate(const Domain &domain, const Field &B, const Field &v, Field &rat
     }
 }
 
-// The power of the elastic force is minus the rate of the elastic energy G phi (tr B - 3)/2, but for the part
-// -tr B/3 of the deviator, which works against div v: none for a solenoidal flow.
+// The power of the elastic force is minus the rate of the elastic energy G phi (tr B - 3)/2, except for the part -tr
+// B/3 of the deviator, which works against div v and vanishes for a solenoidal flow.
 TEST(ElasticEnergy, PowerOfTheForceIsTheRateOfTheEnergy) {
   for (const bool flat : {false, true})
     for (const bool solenoidal : {false, true}) {

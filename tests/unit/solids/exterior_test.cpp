@@ -1,4 +1,4 @@
-// When B of attached bodies is extended linearly: docs/method.md, section 7.
+// Linear extrapolation of B at anchored bodies: docs/method.md, section 7.
 #include "solids/exterior.hpp"
 #include "support/scene.hpp"
 

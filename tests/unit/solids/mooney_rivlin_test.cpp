@@ -1,4 +1,5 @@
-// Mooney-Rivlin: stress and energy in every component, the bound of its stiffness; stress on edges of two viscosities.
+// Mooney-Rivlin: stress and energy in every component, the bound of its stiffness, and the stress on edges with two
+// viscosities.
 #include "diagnostics/edge_stress.hpp"
 #include "diagnostics/energy_rates.hpp"
 #include "flow/limits.hpp"
@@ -49,7 +50,7 @@ Matrix stress(const Material &m, const Matrix &B) {
   return s;
 }
 
-// A uniform B in the block of a solid.
+// A uniform B in the field of a solid.
 void fill_uniform(Solid &solid, const Matrix &B) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) {
@@ -68,7 +69,7 @@ Matrix random_tensor(Random &random, bool flat) {
   return product(F, transposed(F));
 }
 
-// The stress on its own places in the middle of the box.
+// The stress components at their own positions in the middle of the box.
 double computed_stress(const Solid &solid, int a, int b) {
   const Phase &phase = solid.phases[0];
   const int dim = solid.domain.dimension(), k = dim == 3 ? 2 : 0;
@@ -130,7 +131,7 @@ TEST(MooneyRivlin, EnergyOfUniaxialExtension) {
   }
 }
 
-// Faces of all directions, random fields: -rho div(sigma) times dt.
+// -rho div(sigma) times dt at faces of all directions, for random fields.
 double predicted_force(Solid &solid, const Material &material, Field &force) {
   solid.phases[0].material = material;
   Field zero(solid.domain, solid.domain.dimension());
@@ -167,7 +168,7 @@ TEST(MooneyRivlin, NoForceWithoutStrain) {
   }
 }
 
-// div sigma of a smooth B, sampled: the error falls with the square of the spacing.
+// The error of div sigma of a smooth B decreases with the square of the spacing.
 double force_error(bool flat, int cells) {
   Domain domain;
   GridSpec spec = uneven_box(flat, {cells, cells - 2, cells + 3});
@@ -218,9 +219,9 @@ TEST(MooneyRivlin, ForceIsOfSecondOrder) {
   }
 }
 
-// A solid and a fluid in layers under uniform shear, B_xy = 0.3 as far as the solid goes: the stress of an edge that
-// both share is that of the layers, what is left of it without elasticity the viscosity's. Where the surface lies at 45
-// degrees the stress that the edge has is along it: both have the same strain there.
+// A solid and a fluid in layers under uniform shear, with B_xy = 0.3 in the solid. An edge that both share has the
+// stress of the layers: the part without elasticity is viscous. Where the surface is at 45 degrees the stress of the
+// edge is along it, and both layers have the same strain.
 TEST(ElasticStress, OfLayersOfTwoViscosities) {
   const double modulus = 0.7, fluid = 0.4, strain = 0.3, rate = 0.9;
   for (const double contrast : {0.1, 1.0, 5.0})
@@ -270,7 +271,7 @@ TEST(LargestStiffness, BoundsEveryWave) {
     ASSERT_LE(stiffness, bound * (1 + 1e-3));
     closest = std::max(closest, stiffness / bound);
   }
-  EXPECT_GT(closest, 0.8);  // not far too careful
+  EXPECT_GT(closest, 0.8);  // not much too restrictive
 }
 
 TEST(LargestStiffness, KnownValues) {

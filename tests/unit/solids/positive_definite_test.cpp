@@ -1,4 +1,4 @@
-// B stays positive definite in the sense of solid_transport.hpp, and is left alone where it is.
+// B becomes positive definite in the sense of solid_transport.hpp, and does not change where it is.
 #include "solids/solid_transport.hpp"
 #include "support/all_segments.hpp"
 #include "support/polynomials.hpp"
@@ -13,7 +13,7 @@ using namespace eulastic::test;
 
 namespace {
 
-// A body that fills the grid: B = diag + shear of which one edge in three is too much.
+// A body that fills the grid: B = diagonal + shear that is too large on one edge in three.
 struct Body {
   Domain domain;
   Phase phase;

@@ -1,4 +1,5 @@
-// B at the surface of a moving body: the kink of the velocity that traction demands, and the fading of what lies there.
+// Correction of B at the surface of a moving body: the kink of the velocity that follows from traction, and the
+// relaxation.
 #include "solids/surface_correction.hpp"
 #include "kernels/surface.hpp"
 
@@ -64,7 +65,7 @@ Tensor<Dim> transposed(const Tensor<Dim> &x) {
   return z;
 }
 
-// B = F F^T + a little.
+// B = F F^T plus a small perturbation.
 template <int Dim>
 Tensor<Dim> random_tensor() {
   Tensor<Dim> F;
@@ -87,7 +88,7 @@ Vector<Dim> random_normal() {
   return n;
 }
 
-// The tangential part of Bn, and n.Bn behind it.
+// The tangential part of Bn, followed by n.Bn.
 template <int Dim>
 std::array<double, Dim + 1> traction(const Tensor<Dim> &B, const Vector<Dim> &n) {
   std::array<double, Dim + 1> t{};
@@ -122,7 +123,8 @@ void check_relaxation() {
   }
 }
 
-// Sheared by the mixture's L = L_s + (1 - phi) (G/mu) t n^T and corrected, B is what the solid's L_s makes of it.
+// If B is sheared by the mixture's L = L_s + (1 - phi) (G/mu) t n^T and corrected, it is the B that L_s of the solid
+// yields.
 template <int Dim>
 double error_of_step(const Tensor<Dim> &B, const Vector<Dim> &n, const Tensor<Dim> &solid, double share, double dt) {
   constexpr double rate = 1.7;  // G/mu
@@ -271,7 +273,7 @@ TEST(SurfaceCorrection, DoesNotFadeToASmallDeterminant) {
 
 TEST(SurfaceCorrection, ShearOfACutColumnRelaxesAtTheRateOfTheMissingFluid) {
   constexpr double share = 0.6, dt = 0.05, shear = 0.3;
-  Wall wall(share, 0);  // at rest: nothing is forgotten
+  Wall wall(share, 0);  // at rest: nothing is relaxed
   for (int j = 0; j <= 16; ++j)
     for (int i = 0; i <= 16; ++i) {
       wall.phase.tensor.field[0](i, j, 0) = wall.phase.tensor.field[1](i, j, 0) = std::sqrt(1 + shear * shear);

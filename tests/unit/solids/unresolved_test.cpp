@@ -1,4 +1,4 @@
-// B that the grid does not resolve is forgotten, and nothing else changes.
+// Unresolved B is repaired, and nothing else changes.
 #include "solids/unresolved.hpp"
 
 #include "solids/exterior.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr EvolveRule half{0.5, 0.5, 0};
 
-// A body in the lower part of x: B = diag(l, 1/l, 1), turned by 45 degrees in xy: det B = 1 at any stretch.
+// A body in the lower part of x: B = diag(l, 1/l, 1), turned by 45 degrees in xy, so that det B = 1 at any stretch.
 struct Body {
   Domain domain;
   Phase phase;
@@ -63,7 +63,7 @@ TEST(Unresolved, AnyStretchThatTheGridResolvesIsKept) {
 TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
   for (const bool flat : {true, false}) {
     Body body(flat);
-    // Shear that changes its sign at one centre: the mean over its edges vanishes, det B = (l + 1/l)^2/4.
+    // Shear that changes its sign at one centre: the mean over its edges vanishes, and det B = (l + 1/l)^2/4.
     const int i = 2, j = 2, k = flat ? 0 : 2;
     const View xy = body.phase.tensor.field[flat ? 2 : 5];
     xy(i, j, k) = -xy(i, j, k);
@@ -96,8 +96,8 @@ TEST(Unresolved, ACentreWithUnlikeNeighboursIsForgotten) {
     EXPECT_EQ(centres, 7);
     const long count = body.forget();
     const std::vector<double> after = body.values();
-    // Centres around those have lost part of their off-diagonals (yz = xz = 0): one factor for their diagonals, det B
-    // = 1.
+    // Centres around these have lost part of their off-diagonals (yz = xz = 0); their diagonals get one factor such
+    // that det B = 1.
     const int dimension = body.domain.dimension();
     const Int3 n = body.domain.cells();
     for (int c = 0; c < n[2]; ++c)

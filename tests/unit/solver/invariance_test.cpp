@@ -1,4 +1,4 @@
-// The whole step: moving scenes, and solids that carry no stress.
+// The whole step: moving scenes, and solids without stress.
 #include "output/saved_state.hpp"
 #include "support/polynomials.hpp"
 #include "support/scene.hpp"
@@ -10,7 +10,7 @@ using namespace eulastic::test;
 
 namespace {
 
-// Difference to the same vortex and disc carried by a uniform velocity, after they moved a quarter of the box.
+// Difference to the same vortex and disc carried by a uniform velocity, after a quarter of the box.
 double moving_frame_difference(int cells) {
   constexpr double k = 2 * 3.14159265358979323846, speed = 0.5, end = 0.5;
   Scene scene[2];
@@ -47,7 +47,7 @@ TEST(UniformVelocity, ChangesOnlyTheAdvectionError) {
   EXPECT_GT(order(e[0], e[1]), 1);
 }
 
-// One step with an unstrained solid and many with a solid of no stiffness: the bits of the pure fluid.
+// One step with an unstrained solid, and many steps with a solid without stiffness, have the bits of the pure fluid.
 TEST(StresslessSolid, IsTheFluid) {
   for (const bool stiff : {true, false}) {
     Scene scene[2];

@@ -1,4 +1,4 @@
-// A flow has the parts that its scene needs, and what is carried from step to step has one name each.
+// A flow has the parts that its scene needs, and every item of its persistent state has a name of its own.
 #include "drops/surface_tension.hpp"
 #include "membranes/membrane_transport.hpp"
 #include "openings/loaded_outlets.hpp"

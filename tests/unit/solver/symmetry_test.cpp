@@ -35,7 +35,7 @@ Setting mirrored(Setting s, int d) {
   return s;
 }
 
-// x becomes y, y becomes z, z becomes x (2-D: x and y change places).
+// x becomes y, y becomes z, z becomes x (2-D: x and y are exchanged).
 struct Permutation {
   Int3 to;
   template <class T>
@@ -83,7 +83,7 @@ void run(const Setting &s, Scene &scene, int steps = 20) {  // to t = 1
     for (int d = 0; d < dim; ++d) {
       r += std::pow((point[d] - s.centre[d]) / s.axes[d], 2);
     }
-    // Rounded to 1/1024: the same number in a mirrored scene.
+    // Rounded to 1/1024, so that the number is the same in a mirrored scene.
     return std::round(1024 * std::min(1.0, std::max(0.0, 2 - 1.5 * std::sqrt(r)))) / 1024;
   });
   phase.material = s.material;
@@ -91,7 +91,7 @@ void run(const Setting &s, Scene &scene, int steps = 20) {  // to t = 1
   ASSERT_EQ(scene.run(1, steps), 0);
 }
 
-// Largest |a - map(b)| over velocity, pressure, fraction and tensor, where b's point and component of a's are given.
+// Largest |a - map(b)| over velocity, pressure, fraction and tensor, for given point of b and component of a.
 template <class Map>
 double difference(const Scene &a, const Scene &b, Map map) {
   const int dim = a.domain.dimension();
@@ -112,7 +112,7 @@ double difference(const Scene &a, const Scene &b, Map map) {
   return largest;
 }
 
-// Block position of component (c, d): a velocity, a scalar or a tensor component.
+// Position in the field of component (c, d): a velocity, a scalar or a tensor component.
 int block_position(int dim, int c, int d) {
   if (c < 0) return 0;
   if (d < 0 || c == d) return c;
@@ -143,7 +143,7 @@ Setting flat(Setting s) {
   return s;
 }
 
-// Exact bits but for the ACM's sums, whose order follows x, and for SMAC's transforms.
+// The bits are equal, except for the sums of ACM, whose order follows x, and for the transforms of SMAC.
 TEST(MirroredScene, GivesTheMirroredResult) {
   for (const bool two_d : {false, true})
     for (const PressureKind pressure : {PressureKind::acm, PressureKind::smac})
@@ -202,8 +202,8 @@ TEST(RotatedScene, GivesTheRotatedResult) {
   EXPECT_LT(permutation_difference(original, rotated, swap), 1e-12);
 }
 
-// To round-off where the V-cycle can pair all cells down to its coarsest grids; elsewhere ACM's own error is mirrored
-// only as far as its tolerance goes.
+// The results agree to round-off where the V-cycle can pair all cells down to the coarsest grids; elsewhere they agree
+// to the tolerance of ACM.
 TEST(MirroredScene, GivesTheMirroredResultWithFast) {
   for (const bool two_d : {false, true})
     for (const PressureKind pressure : {PressureKind::acm, PressureKind::smac}) {
@@ -226,7 +226,7 @@ TEST(MirroredScene, GivesTheMirroredResultWithFast) {
     }
 }
 
-// The lower half of a scene that is its own mirror image along d, which is to be periodic or between walls.
+// The lower half of a scene that is its own mirror image along d, which is either periodic or between walls.
 Setting half(Setting s, int d) {
   s.side[d] = {s.boundary[d] == Boundary::wall ? SideKind::wall : SideKind::symmetry, SideKind::symmetry};
   s.boundary[d] = Boundary::wall;
@@ -235,8 +235,8 @@ Setting half(Setting s, int d) {
   return s;
 }
 
-// Planes of symmetry are what they are called: a body that lies on one, and shear of it, as in the whole box. To
-// round-off but for what a mirror image is rounded to.
+// With planes of symmetry, a body on such a plane and its shear are as in the whole box, to round-off except for that
+// of the mirror image.
 TEST(HalfOfASymmetricScene, IsTheWholeOne) {
   for (const MethodKind method : {MethodKind::classic, MethodKind::fast})
     for (const bool two_d : {true, false})
@@ -265,8 +265,8 @@ TEST(HalfOfASymmetricScene, IsTheWholeOne) {
       }
 }
 
-// Fast sweeps the directions one after the other: rotated scenes differ by the splitting error, of first order in the
-// step at least, and nothing else.
+// The fast method treats the directions one after the other, so that rotated scenes differ by the splitting error
+// alone, which is at least of first order in the step.
 TEST(RotatedScene, GivesTheRotatedResultWithinTheSplittingErrorWithFast) {
   Setting setting;
   setting.method = MethodKind::fast;

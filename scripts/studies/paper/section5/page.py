@@ -18,8 +18,8 @@ WORDS = {True: "pass", False: "**FAIL**", None: "reported"}
 PAGE = """# Red cells and platelets in a capillary
 
 Written by `scripts/studies/paper/paper_section5`; do not edit. This page repeats section 5 of Sugiyama et al. (HPCS 2013)
-for readers who want to see what the program computes for blood: red cells and platelets in an elastic vessel at hematocrits of 0, 5, 10,
-15 and 20 %, at a size for two cores instead of the K computer:
+for readers who want to see what the program computes for blood. Red cells and platelets flow through an elastic vessel at hematocrits of 0, 5, 10,
+15 and 20 %; the vessel is small enough for two cores, while the paper used the K computer:
 
     scripts/studies/paper/paper_section5                # all runs: about an hour; the same command continues after an interruption
     scripts/studies/paper/paper_section5 --finished     # no runs: writes the page from the finished ones
@@ -37,13 +37,13 @@ of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets, is 
 ![Snapshots at five hematocrits](images/section5_snapshots.png)
 
 *Cells at the beginning and at the end. The far half of the lumen is drawn, and behind it the velocity along x in the middle plane. Cells that cross a
-periodic end are cut there and drawn at both ends. At 13 cells of the grid per diameter some red cells appear as rings ([dimple.md](dimple.md)).*
+periodic end are cut there and drawn at both ends. With 13 grid cells per diameter some red cells appear as rings ([dimple.md](dimple.md)).*
 
 ## Figure 8: positions of the platelets
 
 ![Distance of platelets from the axis](images/section5_platelets.png)
 
-*Distance of every platelet from the axis, without red cells and with the most of them. The grey line is the wall.*
+*Distance of every platelet from the axis, without red cells and at the highest hematocrit. The grey line is the wall.*
 
 ## Figure 9: fluctuation of the platelets
 
@@ -56,29 +56,29 @@ standard errors from the differences between platelets.*
 
 ## Checks
 
-| check | {names} | wanted | verdict |
+| check | {names} | expected | verdict |
 |---|{columns}---|---|
 {checks}
 
-Rows without a verdict are reported, not judged. Means are over the last two thirds of a run; stresses are those of the last snapshot.
+Rows with the verdict "reported" are not judged. Means are over the last two thirds of a run; stresses are those of the last snapshot.
 
 **The wall shear stress** is that at the surface of the lumen, which does not coincide with faces of the grid. It is computed from the fields: the mean over
 a cylinder of radius r around the axis of sigma_xr = mu du/dr + sum of G phi B_xr over bodies, less the flux of momentum, from the staggered
 velocities and the B of every species in the snapshot. In a steady flow this is force x r/2 at every r, independent of the bodies; at the wall it is force x
-diameter/4. The check shows that the flow is steady, that the stresses of the momentum equation are those of the fields, and that no force is lost
-at the surface, where in a cut cell half of the stress is viscous and half elastic. The force on the walls of the box balances the body force on
+diameter/4. The check shows that the flow is steady, that the stresses in the momentum equation agree with the fields in the snapshot, and that no force is lost
+at the surface, where cut cells contain viscous and elastic stress. The force on the walls of the box balances the body force on
 everything in the box, including the vessel.
 
 **The wall** is an elastic solid that is initially without stress. It is held by the boundaries of the box that it reaches; there is no spring that pulls it
 back. The flow shears it by {shear:.2f}, which moves its surface along x by about {elastic:.2f} µm where it is thinnest. Passing cells press on it: the
-outward displacement of its surface (means over {patch:.1f} µm of the circumference and a cell of the grid along x) is present at the first snapshot already;
+outward displacement of its surface (averaged over {patch:.1f} µm of the circumference and a cell of the grid along x) is present at the first snapshot already;
 its mean is zero, since volume is conserved. The displacement must not grow by itself ([method.md](method.md), section 7), so that the rms of the last
 snapshot is compared with that of the first. With cells, the wall also creeps slowly along x: at its mean velocity within two cells of the lumen, by
 {creep:.3f} µm in 1000 µs at most.
 
 ![Shares of the shear stress](images/section5_stress.png)
 
-*Shear stress at the distance r from the axis at the end: viscous and elastic part.*
+*Viscous and elastic part of the shear stress at the distance r from the axis, at the end of the run.*
 {tube}{flow}"""
 
 FLOW = """
@@ -86,37 +86,37 @@ FLOW = """
 
 ![Relative apparent viscosity](images/section5_viscosity.png)
 
-*Relative apparent viscosity: flow rate of plasma over that of blood at the same force; dashed: the fit of Pries,
+*Relative apparent viscosity: the flow rate of plasma over that of blood at the same force. The dashed line is the fit of Pries,
 Neuhaus and Gaehtgens (Am. J. Physiol. 263, H1770, 1992) to blood in glass tubes of this diameter. The discharge
-hematocrit is the red cells' share of the volume that flows.*
+hematocrit is the share of red cells in the volume that leaves the tube.*
 
-| hematocrit | red cells | asked | seeded | discharge | flow rate, µm³/ms | apparent viscosity | Pries et al. | gap |
+| hematocrit | red cells | requested | placed | discharge | flow rate, µm³/ms | apparent viscosity | Pries et al. | gap |
 |---|---|---|---|---|---|---|---|---|
 {flow}
 
 In the last row red cells are membranes around a fluid five times as viscous as plasma, from the same initial positions
 (options/capillary_red_cells_h20.opts); in all other rows they are solids as viscous as plasma.
 
-The next table shows measures that help to explain the gap:
+The gap in the last column is the difference from Pries et al. The next table shows measures that help to explain it:
 
-| hematocrit | tube / discharge hematocrit | the same, Pries et al. 1990 | apparent viscosity in sixths of the run | from the profile | blood in the same places | layer, µm | layer for Pries et al., µm |
+| hematocrit | tube / discharge hematocrit | the same, Pries et al. 1990 | apparent viscosity in sixths of the run | from the profile | blood in the same positions | layer, µm | layer for Pries et al., µm |
 |---|---|---|---|---|---|---|---|
 {layers}
 
-- *Apparent viscosity in sixths of the run*: from the second sixth on.
+- *Apparent viscosity in sixths of the run*: its mean over each sixth, from the second one on.
 - *From the profile*: the apparent viscosity of a tube with the final distribution of cells and the local viscosity {local}, where H is
   the local share of cells. The local viscosity is a fit to force x r/2 over the slope of u at all radii and later snapshots of all runs with such cells.
-- *Blood in the same places*: the same with the viscosity that Pries et al. give for wide tubes.
-- *Layer*: the width of a cell-free layer at the wall that would give the apparent viscosity of the run, with the cells distributed evenly in the remaining lumen; then the
-  same for the value of Pries et al. at the resulting discharge hematocrit. Such a layer is an equivalent, not a feature of the profile.
+- *Blood in the same positions*: the same, but with the local viscosity that Pries et al. give for wide tubes.
+- *Layer*: the width of a cell-free layer at the wall with which an even distribution of the cells in the remaining lumen would have the apparent viscosity of the run. The last
+  column is the same for the value of Pries et al. at the resulting discharge hematocrit. Such a layer is an equivalent, not a feature of the profile.
 
 Two causes of the gap can be separated:
 
-1. **Positions of the cells.** They were seeded in the whole lumen and have not gathered around the axis as in a long tube: the tube hematocrit is too close to the
-   discharge hematocrit, and the layer is too thin. The layer of the last column would close the gap. {strain:.0f} units of shear at the wall are few for such a migration; the
+1. **Positions of the cells.** The cells were placed in the whole lumen and have not gathered around the axis as in a long tube: the tube hematocrit is too close to the
+   discharge hematocrit, and the layer is too thin. The layer of the last column would close the gap. {strain:.0f} units of shear strain at the wall are too few for such a migration; the
    sixths of the run show its progress.
-2. **Properties of the cells.** In the same positions real blood would flow more easily. A solid cell is a neo-Hookean body as viscous as plasma, which cannot tank-tread. Few grid
-   cells span the thickness of a cell ([dimple.md](dimple.md)), and less than one the plasma between two cells.
+2. **Properties of the cells.** In the same positions real blood would flow more easily. A solid cell is a neo-Hookean body as viscous as plasma, which cannot tank-tread. Only a few grid
+   cells span the thickness of a red cell ([dimple.md](dimple.md)), and less than one spans the plasma between two of them.
 
 The vessel is not a cause: the flow rate of plasma alone is correct to {plasma}.{coarse}
 The period, two diameters, has not been varied.
@@ -132,10 +132,10 @@ tests/convergence/tube_test.cpp asserts the order.
 |---|---|---|---|---|
 {rows}
 
-The error of u is the root mean square over the lumen, relative to the largest u; that of the flow rate is relative. The order is taken from half as many cells; it scatters
-because the surface cuts the grid differently. From 40 cells on, the wall is at least four grid cells thick; with two or three the errors are larger than the order suggests. The last
-line has `-vessel_attached false`, which treats the wall like a free body ([method.md](method.md), section 7): it does not move either, but its surface is of first
-order, and the lumen acts as if it were narrower.
+The error of u is the root mean square over the lumen, relative to the largest u. The error of the flow rate is relative. The order is that from half as many cells; it varies
+because the surface cuts each grid differently. From 40 cells on, the wall is at least four grid cells thick; with two or three the errors are larger than the order suggests. The last
+line has `-vessel_anchored false`, which treats the wall like a free body ([method.md](method.md), section 7): the wall does not move either, but its surface is of first
+order, so that the lumen acts as if it were narrower.
 """
 
 
@@ -160,7 +160,7 @@ def checks(runs):
            all(abs(w - 1) < 0.01 for w in held.values()))
     cells = {case: run for case, run in runs.items() if case != "plasma"}
     off = {case: cells_off(run) for case, run in cells.items()}
-    yield ("red cells more or less than asked", {c: f"{n:+.2f}" for c, n in off.items()}, "within one",
+    yield ("number of red cells minus the requested number", {c: f"{n:+.2f}" for c, n in off.items()}, "within one",
            all(abs(n) < 1 for n in off.values()))
     rate = {case: measures.flow_rate(run)[0] / measures.poiseuille(run) for case, run in runs.items()}
     yield ("flow rate / Poiseuille's", {c: f"{q:.4f}" for c, q in rate.items()}, "falls; plasma 1, within 1 %",
@@ -169,19 +169,19 @@ def checks(runs):
     yield ("radial rms velocity of platelets, µm/ms", {c: f"{1e3 * v:.3f}" for c, v in rms.items()},
            "more with red cells than without", verdict(runs, lambda: min(rms[c] for c in cells) > 2 * rms["plasma"]))
     drift = {case: abs(run.series.solid_volume / run.series.solid_volume[0] - 1).max() for case, run in runs.items()}
-    yield ("change of the bodies' volume, all together", {c: f"{d:.1e}" for c, d in drift.items()}, "", None)
+    yield ("change of the volume of all bodies together", {c: f"{d:.1e}" for c, d in drift.items()}, "", None)
     own = {case: run.series.volume_drift.max() for case, run in runs.items()}
-    yield ("change of a body's volume, the worst", {c: f"{d:.1e}" for c, d in own.items()}, "", None)
-    yield ("overlap of bodies, in parts of the red cells", {c: f"{measures.overlap(run):.1g}" for c, run in cells.items()}, "", None)
+    yield ("largest change of the volume of one body", {c: f"{d:.1e}" for c, d in own.items()}, "", None)
+    yield ("overlap of bodies, relative to the volume of the red cells", {c: f"{measures.overlap(run):.1g}" for c, run in cells.items()}, "", None)
     yield ("centres whose strain the grid did not resolve, over all steps", {c: str(run.summary["strain_forgotten"]) for c, run in runs.items()},
            "", None)
     moved = {case: measures.wall_displacements(run) for case, run in runs.items()}
     yield ("wall: outward displacement, rms at the snapshots, µm",
            {c: ", ".join(f"{x.std():.3f}" for x in d) for c, d in moved.items()}, "", None)
     growth = {case: d[-1].std() / d[0].std() for case, d in moved.items()}
-    yield ("wall: that at the last snapshot / at the first", {c: f"{g:.2f}" for c, g in growth.items()}, "below 2",
+    yield ("wall: rms at the last snapshot / at the first", {c: f"{g:.2f}" for c, g in growth.items()}, "below 2",
            verdict(runs, lambda: max(growth.values()) < 2))
-    yield ("wall: the largest ever, µm", {c: f"{abs(d).max():.2f}" for c, d in moved.items()}, "", None)
+    yield ("wall: largest displacement at any snapshot, µm", {c: f"{abs(d).max():.2f}" for c, d in moved.items()}, "", None)
     speed = {case: measures.wall_speed(run) for case, run in runs.items()}
     yield ("wall: mean velocity at the end / largest of plasma", {c: f"{v[0]:+.0e}" for c, v in speed.items()}, "", None)
     yield ("wall: rms velocity at the end / largest of plasma", {c: f"{v[1]:.0e}" for c, v in speed.items()}, "", None)
@@ -298,7 +298,7 @@ def trend(runs):
     spread, error = value[-1] - value[0], math.hypot(rms[cells[0]][1], rms[cells[-1]][1])
     words = "increases with the hematocrit" if spread > 2 * error and value == sorted(value) else \
         "shows no trend with the hematocrit beyond its standard error"
-    return (f"In plasma alone platelets stay on their circles, with {rms['plasma'][0]:.3f} µm/ms. Red cells push them about "
+    return (f"In plasma alone platelets keep their distance from the axis, with an rms of {rms['plasma'][0]:.3f} µm/ms. Red cells push them about "
             f"{value[0] / rms['plasma'][0]:.0f} times\nas fast already at the lowest hematocrit. Among the runs with red cells the rms {words}: "
             + ", ".join(f"{rms[c][0]:.2f} ± {rms[c][1]:.2f}" for c in cells)
             + " µm/ms\nfor " + ", ".join(f"{100 * float(runs[c].options['rbc_hematocrit']):.0f}" for c in cells) + " %. So the motion "
