@@ -147,7 +147,7 @@ void ObstacleSolver::apply(double dt, const Field &q, Field &out) const {
                       double(cells_.size()) * (7 * domain_->dimension() + 1));
   const ConstView from = q[0];
   const Real3 &h = domain_->spacing();
-  for_beside([&](const Beside &cell, const Segment &row) {
+  for_cells_at_bodies([&](const CellAtBody &cell, const Segment &row) {
     const double *u = from.row(row.j, row.k) + cell.i;
     double sum = 0;
     for (int d = 0; d < domain_->dimension(); ++d) {
@@ -164,7 +164,7 @@ void ObstacleSolver::apply(double dt, const Field &q, Field &out) const {
 PetscErrorCode ObstacleSolver::add_diagonal_correction(double dt, const Field &residual, Field &correction) const {
   PetscFunctionBeginUser;
   const Real3 &h = domain_->spacing();
-  for_beside([&](const Beside &cell, const Segment &row) {
+  for_cells_at_bodies([&](const CellAtBody &cell, const Segment &row) {
     double open = 0, all = 0;
     for (int d = 0; d < domain_->dimension(); ++d) {
       open += (cell.open[2 * d] + cell.open[2 * d + 1]) / (h[d] * h[d]);
@@ -325,7 +325,7 @@ void ObstacleSolver::copy_closed(const Field &from, Field *to) const {
 PetscErrorCode ObstacleSolver::scale_divergence(double part, Field &divergence) const {
   PetscFunctionBeginUser;
   const int faces = 2 * domain_->dimension();
-  for_beside([&](const Beside &cell, const Segment &row) {
+  for_cells_at_bodies([&](const CellAtBody &cell, const Segment &row) {
     const double open = std::accumulate(cell.open, cell.open + faces, 0.0) / faces;
     divergence[0](cell.i, row.j, row.k) /= std::max({least_open, open, part * cell.response});
   });

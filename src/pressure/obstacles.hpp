@@ -57,7 +57,7 @@ private:
   void apply(double dt, const Field &q, Field &out) const;
   /// Calls work(cell, row) for every owned cell with faces that are not open.
   template <class Work>
-  void for_beside(const Work &work) const;
+  void for_cells_at_bodies(const Work &work) const;
   /// Calls work(cell) for every owned cell whose faces are all closed.
   template <class Work>
   void for_closed_cells(const Work &work) const;
@@ -79,7 +79,7 @@ private:
 };
 
 template <class Work>
-void ObstacleSolver::for_beside(const Work &work) const {
+void ObstacleSolver::for_cells_at_bodies(const Work &work) const {
   std::size_t at = 0;
   for (const Segment &row : domain_->rows()) {
     for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) work(cells_[c], row);
@@ -89,7 +89,7 @@ void ObstacleSolver::for_beside(const Work &work) const {
 
 template <class Work>
 void ObstacleSolver::for_closed_cells(const Work &work) const {
-  for_beside([&](const Beside &cell, const Segment &row) {
+  for_cells_at_bodies([&](const CellAtBody &cell, const Segment &row) {
     if (cell.closed()) work(Int3{cell.i, row.j, row.k});
   });
 }

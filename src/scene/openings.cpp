@@ -212,6 +212,8 @@ std::string resolve_load(const OpeningSpec &spec, const std::string &name, Outle
   return {};
 }
 
+}  // namespace
+
 std::string resolve_openings(Config *config) {
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2; ++high) {
