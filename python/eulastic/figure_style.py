@@ -53,6 +53,7 @@ def legend_below(figure, axes, columns=4, **options):
     for axis in axes:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             entries.setdefault(label, handle)
+    entries = dict(sorted(entries.items(), key=lambda entry: entry[0] == "reference"))  # last
     lines = -(-len(entries) // columns) + bool(options.get("title"))
     share = (lines * 1.6 * SMALL + 6) / 72 / figure.get_figheight()
     figure.get_layout_engine().set(rect=(0, share, 1, 1 - share))

@@ -98,7 +98,7 @@ class Framed:
         scales = [(name.replace("_", " "), derived.quantity(name), ends)
                   for name, ends in ((look.field, self.body_range), (look.behind, self.speed)) if name]
         if self.tension:
-            scales.insert(0, ("tension of bonds", "force", self.tension))
+            scales.insert(0, ("tension\nof bonds", "force", self.tension))
         low, step, tall = ((0.25, 0, 0.5), (0.06, 0.46, 0.38), (0.04, 0.32, 0.25))[max(0, len(scales) - 1)]
         for n, (name, quantity, ends) in enumerate(scales):
             table = self.table(*(end * units.factor(quantity) for end in ends))

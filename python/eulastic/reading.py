@@ -109,7 +109,7 @@ class Run:
     bodies     arrays of bodies.h5: time (nt), id, species (nb), centroid (nt, nb, 3), ...
     probes     probes.csv likewise; profile["x"], ["y"], ["z"] profile_x.csv, ..., if they exist
     snapshots  list of Snapshot in the order of time
-    adhesion, adhesion_bonds, adhesion_events  adhesion.csv, ... likewise as series, read at first use; None without adhesion
+    adhesion_bonds, adhesion_events  adhesion_bonds.csv, ... as series, read at first use; None without adhesion
     """
 
     def __init__(self, directory):
@@ -129,10 +129,6 @@ class Run:
     def _if_there(self, name, read, otherwise):
         path = self.directory / name
         return read(path) if path.exists() else otherwise
-
-    @functools.cached_property
-    def adhesion(self):
-        return self._if_there("adhesion.csv", read_series, None)
 
     @functools.cached_property
     def adhesion_bonds(self):

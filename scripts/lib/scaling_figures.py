@@ -20,7 +20,7 @@ from performance_runs import ENVIRONMENT, ROOT, on_ranks
 from scaling_model import ASSUMPTIONS, CASE, Machine, Split, Step, model
 
 sys.path.insert(0, str(ROOT / "scripts"))
-from eulastic.figure_style import BLUE, VERMILLION, legend_below, panels, save  # noqa: E402
+from eulastic.figure_style import BLUE, VERMILLION, panels  # noqa: E402
 
 METHODS = "fast", "classic"
 MEASURED = {"fast": (BLUE, "o-"), "classic": (VERMILLION, "s-")}
@@ -140,8 +140,8 @@ def draw(figure, measured, models, path):
         axes.set(yscale="log")
     else:
         axes.set(ylim=(0, 1.1))
-    legend_below(picture, [axes], columns=2)
-    save(picture, pathlib.Path(path), metadata={"Description": "dashed grey lines are modelled, not measured"})
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncol=2)  # below the axes
+    picture.savefig(path, metadata={"Description": "dashed grey lines are modelled, not measured"})
 
 
 def job_script(figure, arguments):

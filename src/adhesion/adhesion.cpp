@@ -1,361 +1,342 @@
 #include "adhesion/adhesion.hpp"
 
+#include "adhesion/grid_place.hpp"
+#include "base/deliver.hpp"
 #include "base/events.hpp"
-#include "base/philox.hpp"
+#include "boxes/receptors.hpp"
 #include "parts/state.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 
 namespace eulastic {
 namespace {
 
-// The faces of component a around a place and their weights, linear along each direction. Indices are those of the
-// domain, not wrapped.
-struct Around {
-  int first[3]{};
-  double part[3]{};
-
-  Around(const Box &box, int a, const double place[3]) {
-    for (int d = 0; d < box.dimension(); ++d) {
-      const double at = place[d] / box.spacing()[d] - (d == a ? 0 : 0.5), low = std::floor(at);
-      first[d] = static_cast<int>(low);
-      part[d] = at - low;
-    }
-  }
-  /// visit(i, j, k, weight)
-  template <class Visit>
-  void for_faces(int dimension, const Visit &visit) const {
-    for (int corner = 0; corner < (dimension == 3 ? 8 : 4); ++corner) {
-      int index[3]{first[0], first[1], first[2]};
-      double weight = 1;
-      for (int d = 0; d < dimension; ++d) {
-        const int step = corner >> d & 1;
-        index[d] += step;
-        weight *= step ? part[d] : 1 - part[d];
-      }
-      visit(index[0], index[1], index[2], weight);
-    }
-  }
-};
-
 double length_of(const Real3 &way) { return std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]); }
-
-int number_of(const std::vector<Receptor> &receptors, std::ptrdiff_t which) {
-  return which < 0 ? 0 : static_cast<int>(receptors[which].body);
-}
 
 }  // namespace
 
+std::size_t Adhesion::bytes() const {
+  std::size_t receptors = 0;
+  for (const FreeBodies::Body &body : bodies()) receptors += body.receptors.size();
+  return receptors * sizeof(Receptor) + near_.size() * sizeof(NearReceptor) + bonds_.size() * sizeof(Bond) +
+         forces_.bytes();
+}
+
 PetscErrorCode Adhesion::carry(CarriedState *state) {
   PetscFunctionBeginUser;
-  for (Receptor &receptor : receptors_) {
-    auto &numbers = state->reals["receptors"];
-    for (double *number : {&receptor.body, &receptor.partner, &receptor.pair, &receptor.since})
-      numbers.push_back(number);
-    for (int d = 0; d < 3; ++d) numbers.insert(numbers.end(), {&receptor.place[d], &receptor.anchor[d]});
+  PetscCall(sum_events());
+  state->integers["bonds_formed_and_broken"] = {&formed_, &lost_};
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Adhesion::place_on_bodies() {
+  PetscFunctionBeginUser;
+  fits_ = -1;
+  const std::vector<BodyInBox> list = boxed_.list();
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    double density = 0;
+    for (const AdhesionPair &pair : spec_.pairs)
+      if (pair.has(list[b].species)) density = std::max(density, pair.density);
+    std::vector<Receptor> &receptors = boxed_.receptors(b);
+    if (density > 0 && receptors.empty())
+      place_receptors(list[b], density, static_cast<std::uint32_t>(spec_.seed), &receptors);
   }
+  PetscCall(renew());
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Adhesion::start() {
   PetscFunctionBeginUser;
-  PetscCall(place_receptors(spec_, flow_.domain, boxed_.list(), &receptors_));
-  find_bonds();
+  PetscCall(place_on_bodies());
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Adhesion::resume() {
   PetscFunctionBeginUser;
-  find_bonds();
+  fits_ = -1;
+  PetscCall(renew());
   PetscFunctionReturn(0);
 }
 
-Real3 Adhesion::way_to(const Receptor &from, const double to[3]) const {
+Receptor *Adhesion::find_own(const ReceptorName &name) {
+  const auto body = std::lower_bound(bodies().begin(), bodies().end(), name.body,
+                                     [](const FreeBodies::Body &one, int number) { return one.number < number; });
+  if (body == bodies().end() || body->number != name.body) return nullptr;
+  if (name.index < 0 || name.index >= static_cast<int>(body->receptors.size())) return nullptr;
+  return &boxed_.receptors(body - bodies().begin())[name.index];
+}
+
+const Adhesion::NearReceptor *Adhesion::find_near(const ReceptorName &name) const {
+  const auto found = std::lower_bound(near_.begin(), near_.end(), name,
+                                      [](const NearReceptor &one, const ReceptorName &of) { return one.name < of; });
+  return found != near_.end() && found->name == name ? &*found : nullptr;
+}
+
+Real3 Adhesion::way(const Real3 &from, const Real3 &to) const {
   const Domain &domain = flow_.domain;
   Real3 way{};
   for (int d = 0; d < domain.dimension(); ++d) {
-    way[d] = to[d] - from.place[d];
+    way[d] = to[d] - from[d];
     const double length = domain.domain_shape().length[d];
     if (!domain.is_wall(d)) way[d] -= length * std::round(way[d] / length);
   }
   return way;
 }
 
-// Every bond once, in the order of receptors.
-void Adhesion::find_bonds() {
-  bonds_.clear();
-  for (std::size_t r = 0; r < receptors_.size(); ++r) {
-    const Receptor &receptor = receptors_[r];
-    const auto other = static_cast<std::ptrdiff_t>(receptor.partner);
-    if (!receptor.is_bound() || (other >= 0 && other < static_cast<std::ptrdiff_t>(r))) continue;
-    const Real3 way = way_to(receptor, other < 0 ? receptor.anchor : receptors_[other].place);
-    const double length = length_of(way);
-    const double tension = law(receptor).tension(length), share = length > 0 ? tension / length : 0;
-    bonds_.push_back({r, other, {share * way[0], share * way[1], share * way[2]}, tension});
-  }
-}
-
-// Of the grid, linear between faces, by the rank that owns the cell of the place: in a sum over all ranks the others
-// have 0, which changes no bit.
-PetscErrorCode Adhesion::find_velocity(const std::vector<Real3> &places, std::vector<Real3> *velocities) const {
-  const Domain &domain = flow_.domain;
-  const Field &velocity = flow_.now.velocity;
-  PetscFunctionBeginUser;
-  velocities->assign(places.size(), {});
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    int cell[3]{}, shift[3]{};
-    for (int d = 0; d < domain.dimension(); ++d) {
-      const int plain = static_cast<int>(std::floor(places[p][d] / domain.spacing()[d]));
-      cell[d] = domain.is_wall(d) ? std::clamp(plain, 0, domain.domain_cells()[d] - 1) : domain.image(d, plain);
-      shift[d] = (domain.is_wall(d) ? 0 : cell[d] - plain) - domain.layout().begin[d];
-    }
-    if (domain.owner(cell[0], cell[1], cell[2]) != domain.rank()) continue;
-    for (int a = 0; a < domain.dimension(); ++a) {
-      const ConstView v = velocity[a];
-      Around(domain, a, places[p].data()).for_faces(domain.dimension(), [&](int i, int j, int k, double weight) {
-        (*velocities)[p][a] += weight * v(i + shift[0], j + shift[1], k + shift[2]);
-      });
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, velocities->data(), static_cast<int>(3 * places.size()), MPI_DOUBLE, MPI_SUM,
-                             domain.comm()));
-  PetscFunctionReturn(0);
-}
-
-// By the midpoint rule, with the anchors of bonds: on walls the velocity between faces is that of the wall.
-PetscErrorCode Adhesion::move_receptors(double dt) {
-  const Domain &domain = flow_.domain;
-  std::vector<double *> moved;
-  std::vector<Real3> places, velocities;
-  PetscFunctionBeginUser;
-  for (Receptor &receptor : receptors_) moved.push_back(receptor.place);
-  for (Receptor &receptor : receptors_)
-    if (receptor.partner == Receptor::wall) moved.push_back(receptor.anchor);
-  for (const double *place : moved) places.push_back({place[0], place[1], place[2]});
-  PetscCall(find_velocity(places, &velocities));
-  for (std::size_t p = 0; p < places.size(); ++p)
-    for (int d = 0; d < 3; ++d) places[p][d] += 0.5 * dt * velocities[p][d];
-  PetscCall(find_velocity(places, &velocities));
-  for (std::size_t p = 0; p < places.size(); ++p)
-    for (int d = 0; d < domain.dimension(); ++d) {
-      moved[p][d] += dt * velocities[p][d];
-      const double length = domain.domain_shape().length[d];
-      if (domain.is_wall(d)) moved[p][d] = std::clamp(moved[p][d], 0.0, length);
-    }
-  PetscFunctionReturn(0);
-}
-
-// What receptors have drifted off their surfaces is taken back by the rank that has the body. Those of bodies that no
-// rank has any more are given up.
-PetscErrorCode Adhesion::follow_surfaces() {
-  std::vector<std::array<double, 4>> ways(receptors_.size());  // and 1 where the body is there
-  std::map<int, const BodyInBox *> own;
-  const std::vector<BodyInBox> bodies = boxed_.list();
-  PetscFunctionBeginUser;
-  for (const BodyInBox &body : bodies) own[body.number] = &body;
-  for (std::size_t r = 0; r < receptors_.size(); ++r) {
-    const auto body = own.find(static_cast<int>(receptors_[r].body));
-    if (body == own.end()) continue;
-    const Real3 way = way_to_surface(*body->second, receptors_[r].place);
-    ways[r] = {way[0], way[1], way[2], 1};
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ways.data(), static_cast<int>(4 * ways.size()), MPI_DOUBLE, MPI_SUM,
-                             flow_.domain.comm()));
-  for (std::size_t r = 0; r < receptors_.size(); ++r) {
-    for (int d = 0; d < 3; ++d) receptors_[r].place[d] += ways[r][d];
-    if (ways[r][3] > 0 || !receptors_[r].alive()) continue;
-    if (receptors_[r].is_bound()) release(&receptors_[r], 0);
-    receptors_[r].body = 0;
-  }
-  PetscFunctionReturn(0);
-}
-
-double Adhesion::random(std::size_t receptor, unsigned which) const {
-  const auto step = static_cast<std::uint64_t>(flow_.now.step);
-  return uniform(philox({static_cast<std::uint32_t>(receptor), static_cast<std::uint32_t>(step),
-                         static_cast<std::uint32_t>(step >> 32), which},
-                        {static_cast<std::uint32_t>(spec_.seed), 2}));
-}
-
-void Adhesion::release(Receptor *receptor, double tension) {
-  const auto other = static_cast<std::ptrdiff_t>(receptor->partner);
-  events_.push_back({flow_.now.time, false, static_cast<int>(receptor->body), number_of(receptors_, other),
-                     static_cast<int>(receptor->pair), tension, flow_.now.time - receptor->since});
-  if (other >= 0) receptors_[other].partner = Receptor::none;
-  receptor->partner = Receptor::none;
-}
-
-void Adhesion::break_bonds(double dt) {
-  for (const Bond &bond : bonds_) {
-    Receptor &receptor = receptors_[bond.receptor];
-    if (!receptor.is_bound()) continue;
-    if (random(bond.receptor, 0) < kernels::probability(law(receptor).off_rate(bond.tension), dt))
-      release(&receptor, bond.tension);
-  }
-}
-
-// Receptors that may bind in this step: those that were free when it began.
-std::vector<char> Adhesion::find_free() const {
-  std::vector<char> free;
-  for (const Receptor &receptor : receptors_) free.push_back(receptor.alive() && !receptor.is_bound());
-  return free;
-}
-
-// Whether a pair is adhesive at a place.
-bool Adhesion::is_in_region(const AdhesionPair &pair, const Real3 &place) const {
-  const Domain &domain = flow_.domain;
-  bool inside = true;
-  for (int d = 0; d < domain.dimension(); ++d) {
-    const double length = domain.domain_shape().length[d];
-    const double wrapped = domain.is_wall(d) ? place[d] : place[d] - length * std::floor(place[d] / length);
-    inside = inside && wrapped >= pair.low[d] && wrapped <= pair.high[d];
-  }
-  return inside;
-}
-
-// Where a receptor would bind to a wall of the box.
-Foot Adhesion::foot_on_wall(const AdhesionPair &pair, const Receptor &receptor) const {
-  const Domain &domain = flow_.domain;
-  double nearest = HUGE_VAL;
-  Foot foot;
-  for (const auto [d, high] : domain.sides()) {
-    if (flow_.spec.sides[d][high].kind != SideKind::wall) continue;
-    const double end = high ? domain.domain_shape().length[d] : 0;
-    const double distance = std::fabs(receptor.place[d] - end);
-    Real3 place{receptor.place[0], receptor.place[1], receptor.place[2]};
-    place[d] = end;
-    if (distance >= nearest || !is_in_region(pair, place)) continue;
-    nearest = distance;
-    foot = {place, 1};
-  }
-  return foot;
-}
-
-// Free receptors and what they may bind to that is no other receptor: the nearest of all pairs.
-PetscErrorCode Adhesion::form_bonds_to_walls(double dt, const std::vector<char> &free) {
-  std::vector<Real3> places;
-  std::vector<double> distances(receptors_.size(), HUGE_VAL);
-  std::vector<Foot> anchors(receptors_.size()), feet(receptors_.size());
-  std::vector<int> pairs(receptors_.size());
-  PetscFunctionBeginUser;
-  for (const Receptor &receptor : receptors_)
-    places.push_back({receptor.place[0], receptor.place[1], receptor.place[2]});
-  for (std::size_t p = 0; p < spec_.pairs.size(); ++p) {
-    const AdhesionPair &pair = spec_.pairs[p];
-    std::vector<char> wanted(free);
-    for (std::size_t r = 0; r < wanted.size(); ++r)
-      wanted[r] = wanted[r] && static_cast<int>(receptors_[r].species) == pair.first;
-    if (is_on_grid(pair)) PetscCall(find_feet(flow_.domain, flow_.now.phases[pair.second], places, wanted, &feet));
-    for (std::size_t r = 0; r < wanted.size() && (pair.to_wall() || is_on_grid(pair)); ++r) {
-      if (!wanted[r]) continue;
-      const Foot foot = pair.to_wall() ? foot_on_wall(pair, receptors_[r]) : feet[r];
-      if (!(foot.found > 0) || !is_in_region(pair, foot.place)) continue;
-      const Real3 way = way_to(receptors_[r], foot.place.data());
-      const double distance = length_of(way);
-      if (distance > pair.law.reach || distance >= distances[r]) continue;
-      distances[r] = distance;
-      anchors[r] = foot;
-      pairs[r] = static_cast<int>(p);
-    }
-  }
-  for (std::size_t r = 0; r < receptors_.size(); ++r) {
-    if (!(distances[r] < HUGE_VAL)) continue;
-    if (random(r, 1) >= kernels::probability(spec_.pairs[pairs[r]].law.on_rate(distances[r]), dt)) continue;
-    Receptor &receptor = receptors_[r];
-    receptor.partner = Receptor::wall;
-    receptor.pair = pairs[r];
-    receptor.since = flow_.now.time;
-    std::copy_n(anchors[r].place.data(), 3, receptor.anchor);
-    note_formed(r);
-  }
-  PetscFunctionReturn(0);
-}
-
-// The pair by which a receptor binds to the nearest free one of another body within reach, of those after it.
-struct Adhesion::Candidate {
-  double distance = HUGE_VAL;
-  std::size_t other = 0;
-  int pair = -1;
-};
-
-Adhesion::Candidate Adhesion::nearest_partner(std::size_t r, const ReceptorBins &bins) const {
-  const Receptor &receptor = receptors_[r];
-  Candidate nearest;
-  bins.for_near(receptor, [&](std::size_t s) {
-    const Receptor &candidate = receptors_[s];
-    if (s <= r || candidate.is_bound() || candidate.body == receptor.body) return;
-    for (std::size_t p = 0; p < spec_.pairs.size(); ++p) {
-      const AdhesionPair &pair = spec_.pairs[p];
-      if (!pair.joins(static_cast<int>(receptor.species), static_cast<int>(candidate.species))) continue;
-      const Real3 way = way_to(receptor, candidate.place);
-      const double distance = length_of(way);
-      const bool is_nearer = distance < nearest.distance || (distance == nearest.distance && s < nearest.other);
-      if (distance <= pair.law.reach && is_nearer) nearest = {distance, s, static_cast<int>(p)};
-    }
-  });
-  return nearest;
-}
-
-void Adhesion::form_bonds_of_bodies(double dt, const std::vector<char> &free) {
+double Adhesion::reach_of_bodies() const {
   double reach = 0;
   for (const AdhesionPair &pair : spec_.pairs)
-    if (!pair.to_wall() && !is_on_grid(pair)) reach = std::max(reach, pair.law.reach);
-  if (!(reach > 0)) return;
-  ReceptorBins bins(flow_.domain, reach);
-  for (std::size_t r = 0; r < receptors_.size(); ++r)
-    if (free[r] && !receptors_[r].is_bound()) bins.add(r, receptors_[r]);
-  for (std::size_t r = 0; r < receptors_.size(); ++r) {
-    Receptor &receptor = receptors_[r];
-    if (!free[r] || receptor.is_bound()) continue;
-    const Candidate found = nearest_partner(r, bins);
-    if (found.pair < 0) continue;
-    if (random(r, 2) >= kernels::probability(spec_.pairs[found.pair].law.on_rate(found.distance), dt)) continue;
-    receptor.partner = double(found.other);
-    receptors_[found.other].partner = double(r);
-    for (Receptor *end : {&receptor, &receptors_[found.other]}) {
-      end->pair = found.pair;
-      end->since = flow_.now.time;
+    if (is_of_bodies(pair)) reach = std::max(reach, pair.law.reach);
+  return reach;
+}
+
+// The box of a body holds it until all get other boxes; around it receptors find partners, surfaces move by a cell
+// until they are looked for again, and bonds end.
+Extent Adhesion::hull_of(const FreeBodies::Body &body) const {
+  const Domain &domain = flow_.domain;
+  const bool on_grid = std::any_of(spec_.pairs.begin(), spec_.pairs.end(),
+                                   [this](const AdhesionPair &pair) { return is_on_grid(pair); });
+  Extent hull{};
+  for (int d = 0; d < 3; ++d) {
+    const double h = domain.spacing()[d];
+    const int grown = d >= domain.dimension() ? 0
+                                              : std::max(static_cast<int>(std::ceil(reach_of_bodies() / h)) + 1,
+                                                         on_grid ? foot_reach + 1 : 0);
+    hull.begin[d] = body.box.layout().begin[d] - grown;
+    hull.end[d] = body.box.layout().begin[d] + body.box.cells()[d] + grown;
+    for (const Receptor &receptor : body.receptors) {
+      if (!(receptor.partner > 0) || d >= domain.dimension()) continue;
+      const int cell = static_cast<int>(std::floor(receptor.anchor[d] / h));
+      hull.begin[d] = std::min(hull.begin[d], cell);
+      hull.end[d] = std::max(hull.end[d], cell + 1);
     }
-    note_formed(r);
+  }
+  return hull;
+}
+
+// What is near every body, if bodies have other boxes now, or surfaces may be elsewhere.
+PetscErrorCode Adhesion::look_around() {
+  PetscFunctionBeginUser;
+  if (fits_ == boxed_.bodies().fits() && travel_ <= 1) PetscFunctionReturn(0);
+  fits_ = boxed_.bodies().fits();
+  travel_ = 0;
+  std::vector<BodyBlock> blocks;
+  for (const FreeBodies::Body &body : bodies()) {
+    const Layout &layout = body.box.layout();
+    Extent box{layout.begin, {}};
+    for (int d = 0; d < 3; ++d) box.end[d] = layout.begin[d] + layout.cells[d];
+    if (!body.receptors.empty()) blocks.push_back({body.number, body.species, box, hull_of(body)});
+  }
+  const auto join = [this](int one, int other) {
+    return std::any_of(spec_.pairs.begin(), spec_.pairs.end(),
+                       [&](const AdhesionPair &pair) { return is_of_bodies(pair) && pair.joins(one, other); });
+  };
+  const auto has_surface = [this](int species, const Extent &hull) {
+    return std::any_of(spec_.pairs.begin(), spec_.pairs.end(), [&](const AdhesionPair &pair) {
+      return is_on_grid(pair) && pair.first == species &&
+             has_surface_in(flow_.domain, flow_.now.phases[pair.second], hull);
+    });
+  };
+  PetscCall(find_surroundings(flow_.domain, blocks, join, has_surface, &around_));
+  PetscFunctionReturn(0);
+}
+
+// To the rank that owns the cell of a place, and back.
+struct Adhesion::Question {
+  int rank, body, receptor;  ///< who asks: positions
+  int pair;                  ///< a point of the surface of its second species is wanted; `anchor`: where that has moved
+  bool found;
+  Real3 place;  ///< and the answer
+  static constexpr int anchor = -1;
+};
+
+// Anchors move by the midpoint rule: on walls the velocity between faces is that of the wall.
+void Adhesion::answer(double dt, Question *question) const {
+  const Domain &domain = flow_.domain;
+  Real3 &place = question->place;
+  if (question->pair != Question::anchor) {
+    const Foot foot = find_foot(domain, flow_.now.phases[spec_.pairs[question->pair].second], place);
+    question->found = foot.found;
+    place = foot.place;
+    return;
+  }
+  const GridPlace cell(domain, place);
+  Real3 half = place;
+  const Real3 first = cell.velocity(domain, flow_.now.velocity, place);
+  for (int d = 0; d < 3; ++d) half[d] += 0.5 * dt * first[d];
+  const Real3 second = cell.velocity(domain, flow_.now.velocity, half);
+  for (int d = 0; d < domain.dimension(); ++d) {
+    place[d] += dt * second[d];
+    if (domain.is_wall(d)) place[d] = std::clamp(place[d], 0.0, domain.domain_shape().length[d]);
   }
 }
 
-void Adhesion::note_formed(std::size_t r) {
-  const Receptor &receptor = receptors_[r];
-  events_.push_back({flow_.now.time, true, static_cast<int>(receptor.body),
-                     number_of(receptors_, static_cast<std::ptrdiff_t>(receptor.partner)),
-                     static_cast<int>(receptor.pair), 0, 0});
+// Moves anchors and finds the points of surfaces on the grid that free receptors may bind to.
+PetscErrorCode Adhesion::ask_grid(double dt) {
+  const Domain &domain = flow_.domain;
+  std::vector<Question> questions;
+  std::vector<int> to;
+  PetscFunctionBeginUser;
+  feet_.clear();
+  const auto ask = [&](std::size_t b, std::size_t r, int pair, const Real3 &place) {
+    questions.push_back({domain.rank(), static_cast<int>(b), static_cast<int>(r), pair, false, place});
+    to.push_back(GridPlace(domain, place).owner(domain));
+  };
+  for_receptors([&](std::size_t b, std::size_t r, Receptor *receptor) {
+    if (receptor->partner == Receptor::wall) ask(b, r, Question::anchor, receptor->anchor);
+    const auto around = around_.find(bodies()[b].number);
+    if (receptor->is_bound() || around == around_.end() || !around->second.surface) return;
+    for (std::size_t p = 0; p < spec_.pairs.size(); ++p)
+      if (is_on_grid(spec_.pairs[p]) && spec_.pairs[p].first == bodies()[b].species)
+        ask(b, r, static_cast<int>(p), receptor->place);
+  });
+  const bool any = std::any_of(spec_.pairs.begin(), spec_.pairs.end(),
+                               [this](const AdhesionPair &pair) { return !is_of_bodies(pair); });
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(deliver(domain.comm(), to, &questions));
+  to.clear();
+  for (Question &question : questions) {
+    answer(dt, &question);
+    to.push_back(question.rank);
+  }
+  PetscCall(deliver(domain.comm(), to, &questions));
+  for (const Question &question : questions) {
+    if (question.pair == Question::anchor)
+      boxed_.receptors(question.body)[question.receptor].anchor = question.place;
+    else if (question.found)
+      feet_[name_of(question.body, question.receptor)].emplace_back(question.pair, question.place);
+  }
+  PetscFunctionReturn(0);
+}
+
+// Whether a place is within reach of a block.
+bool Adhesion::is_near(const Real3 &place, const Extent &box, double reach) const {
+  const Domain &domain = flow_.domain;
+  for (int d = 0; d < domain.dimension(); ++d) {
+    const double h = domain.spacing()[d], length = domain.domain_shape().length[d];
+    double away = place[d] - 0.5 * h * (box.begin[d] + box.end[d]);
+    if (!domain.is_wall(d)) away -= length * std::round(away / length);
+    if (std::fabs(away) > 0.5 * h * (box.end[d] - box.begin[d]) + 1.0001 * reach) return false;
+  }
+  return true;
+}
+
+// Receptors near another body, and those bound to it, become known to its rank.
+PetscErrorCode Adhesion::tell_near() {
+  const double reach = reach_of_bodies();
+  const int here = flow_.domain.rank();
+  std::vector<NearReceptor> own;
+  std::vector<int> to;
+  PetscFunctionBeginUser;
+  near_.clear();
+  if (!(reach > 0)) PetscFunctionReturn(0);
+  for_receptors([&](std::size_t b, std::size_t r, const Receptor *receptor) {
+    const auto around = around_.find(bodies()[b].number);
+    if (around == around_.end()) return;
+    std::set<int> ranks;
+    for (const NearBody &body : around->second.bodies)
+      if (receptor->partner == body.number || is_near(receptor->place, body.box, reach)) ranks.insert(body.rank);
+    if (ranks.empty()) return;
+    ranks.insert(here);
+    for (const int rank : ranks) {
+      own.push_back({name_of(b, r),
+                     bodies()[b].species,
+                     here,
+                     !receptor->is_bound(),
+                     {static_cast<int>(receptor->partner), static_cast<int>(receptor->other)},
+                     receptor->place});
+      to.push_back(rank);
+    }
+  });
+  PetscCall(deliver(flow_.domain.comm(), to, &own));
+  near_.swap(own);
+  std::sort(near_.begin(), near_.end(),
+            [](const NearReceptor &one, const NearReceptor &other) { return one.name < other.name; });
+  PetscFunctionReturn(0);
+}
+
+// A receptor whose partner has left with its body has no bond.
+void Adhesion::find_bonds() {
+  bonds_.clear();
+  for_receptors([&](std::size_t b, std::size_t r, Receptor *receptor) {
+    if (!receptor->is_bound()) return;
+    const bool wall = receptor->partner == Receptor::wall;
+    const NearReceptor *other =
+        wall ? nullptr : find_near({static_cast<int>(receptor->partner), static_cast<int>(receptor->other)});
+    if (!wall && !other) return;
+    const Real3 span = way(receptor->place, wall ? receptor->anchor : other->place);
+    const double length = length_of(span), tension = law(*receptor).tension(length);
+    const double share = length > 0 ? tension / length : 0;
+    for (int d = 0; d < 3 && !wall; ++d) receptor->anchor[d] = receptor->place[d] + span[d];
+    bonds_.push_back({b, r, {share * span[0], share * span[1], share * span[2]}, tension});
+  });
+}
+
+// The forces of bonds on the flow. Both ends of a bond between bodies do this; a wall of the box bears the other end.
+PetscErrorCode Adhesion::send_forces() {
+  std::vector<PointForce> forces;
+  double most = 0;
+  PetscFunctionBeginUser;
+  for (std::size_t n = 0, first = 0; n < bonds_.size(); ++n) {
+    const Bond &bond = bonds_[n];
+    if (bond.body != bonds_[first].body) first = n;
+    most = std::max(most, double(n - first + 1));
+    const Receptor &receptor = bodies()[bond.body].receptors[bond.receptor];
+    const ReceptorName name = name_of(bond.body, bond.receptor);
+    const Real3 &pull = bond.pull;
+    forces.push_back({name.body, name.index, 0, receptor.place, pull});
+    if (is_on_grid(spec_.pairs[static_cast<std::size_t>(receptor.pair)]))
+      forces.push_back({name.body, name.index, 1, receptor.anchor, {-pull[0], -pull[1], -pull[2]}});
+  }
+  PetscCall(forces_.set(std::move(forces)));
+  PetscCallMPI(MPI_Allreduce(&most, &most_, 1, MPI_DOUBLE, MPI_MAX, flow_.domain.comm()));
+  PetscFunctionReturn(0);
+}
+
+// Bonds of the receptors as they are. Bodies may have gone or got other boxes.
+PetscErrorCode Adhesion::renew() {
+  PetscFunctionBeginUser;
+  PetscCall(look_around());
+  PetscCall(tell_near());
+  find_bonds();
+  PetscCall(send_forces());
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
-  if (phases != &flow_.now.phases || receptors_.empty()) PetscFunctionReturn(0);
+  if (phases != &flow_.now.phases) PetscFunctionReturn(0);
   VerbScope scope(Verb::adhesion);
-  PetscCall(move_receptors(dt));
-  PetscCall(follow_surfaces());
+  travel_ += flow_.now.crossing_rate * dt;
+  broken_.clear();
+  PetscCall(look_around());
+  PetscCall(ask_grid(dt));
+  PetscCall(tell_near());
+  release_lost();
   find_bonds();
-  const std::vector<char> free = find_free();
   break_bonds(dt);
-  PetscCall(form_bonds_to_walls(dt, free));
-  form_bonds_of_bodies(dt, free);
+  form_bonds_to_walls(dt);
+  PetscCall(form_bonds_of_bodies(dt));
   find_bonds();
+  PetscCall(send_forces());
+  PetscFunctionReturn(0);
+}
+
+// Bodies that have left take the forces of their bonds with them.
+PetscErrorCode Adhesion::end_step() {
+  PetscFunctionBeginUser;
+  if (fits_ != boxed_.bodies().fits()) PetscCall(renew());
   PetscFunctionReturn(0);
 }
 
 double Adhesion::largest_step() const {
   constexpr double pi = 3.14159265358979323846;
   const Domain &domain = flow_.domain;
-  std::map<double, int> bonds_of;
-  for (const Bond &bond : bonds_) ++bonds_of[receptors_[bond.receptor].body];
-  int most = 1;
-  for (const auto &[body, bonds] : bonds_of) most = std::max(most, bonds);
   double shortest = HUGE_VAL, h = domain.spacing()[0];
   for (int d = 1; d < domain.dimension(); ++d) h = std::min(h, domain.spacing()[d]);
   for (const AdhesionPair &pair : spec_.pairs) {
-    const double stiffness = pair.law.stiffness * most;
+    const double stiffness = pair.law.stiffness * std::max(1.0, most_);
     const double drag = 3 * pi * flow_.fluid.viscosity * h, mass = flow_.fluid.density * h * h * h;
     if (stiffness > 0) shortest = std::min(shortest, std::max(drag / stiffness, std::sqrt(mass / stiffness)));
     const double rate = std::max(pair.law.rate_on, pair.law.off_rate(0));
@@ -364,57 +345,9 @@ double Adhesion::largest_step() const {
   return shortest;
 }
 
-bool Adhesion::is_on_grid(const AdhesionPair &pair) const {
-  return !pair.to_wall() && !flow_.now.phases[pair.second].boxed;
-}
-
-// Where a bond pulls on the flow with its other end too; null: a wall of the box bears that.
-const double *Adhesion::other_end(const Bond &bond) const {
-  const Receptor &receptor = receptors_[bond.receptor];
-  if (bond.other >= 0) return receptors_[bond.other].place;
-  return is_on_grid(spec_.pairs[static_cast<std::size_t>(receptor.pair)]) ? receptor.anchor : nullptr;
-}
-
-// On the faces around a place, with the weights with which the velocity is read there, so that the power of a force is
-// what it does on the flow. Of a face behind a side the velocity is that of its mirror image with a sign, and so is
-// the force. Faces on walls are theirs.
-void Adhesion::add_at(const double place[3], const Real3 &force, double factor, Field *field) const {
-  const Domain &domain = flow_.domain;
-  const Layout &layout = domain.layout();
-  for (int a = 0; a < domain.dimension(); ++a) {
-    const View out = (*field)[a];
-    Around(domain, a, place).for_faces(domain.dimension(), [&](int i, int j, int k, double weight) {
-      int at[3] = {i, j, k};
-      for (int d = 0; d < domain.dimension(); ++d) {
-        const int cells = domain.domain_cells()[d];
-        if (!domain.is_wall(d)) {
-          at[d] = domain.image(d, at[d]);
-        } else if (d == a) {
-          if (at[d] < 1 || at[d] >= cells) return;
-        } else if (at[d] < 0 || at[d] >= cells) {
-          if (is_solid(flow_.spec.sides[d][at[d] >= cells].kind)) weight = -weight;
-          at[d] = at[d] < 0 ? -1 - at[d] : 2 * cells - 1 - at[d];
-        }
-        at[d] -= layout.begin[d];
-        if (at[d] < 0 || at[d] >= layout.cells[d]) return;
-      }
-      out(at[0], at[1], at[2]) += factor * weight * force[a];
-    });
-  }
-}
-
-void Adhesion::add(const std::vector<WeightedTarget> &targets) const {
-  const double per_mass = 1 / (flow_.fluid.density * flow_.domain.cell_volume());
-  for (const Bond &bond : bonds_)
-    for (const WeightedTarget &target : targets) {
-      add_at(receptors_[bond.receptor].place, bond.pull, target.factor * per_mass, target.field);
-      if (const double *end = other_end(bond)) add_at(end, bond.pull, -target.factor * per_mass, target.field);
-    }
-}
-
 PetscErrorCode Adhesion::begin_slope(double dt, Field &slope) {
   PetscFunctionBeginUser;
-  add({{&slope, -1 / dt}});
+  forces_.add({{&slope, -1 / dt}});
   PetscFunctionReturn(0);
 }
 
@@ -422,83 +355,14 @@ PetscErrorCode Adhesion::add_rate(const MomentumRate &rate) {
   PetscFunctionBeginUser;
   std::vector<WeightedTarget> targets{{&rate.field, rate.scale}};
   if (rate.slope.field) targets.push_back(rate.slope);
-  add(targets);
+  forces_.add(targets);
   PetscFunctionReturn(0);
-}
-
-// Bonds come and go within a step: all rows around receptors.
-void Adhesion::mark_forced_rows(std::vector<char> *rows) const {
-  const Domain &domain = flow_.domain;
-  const Layout &layout = domain.layout();
-  for (const Receptor &receptor : receptors_) {
-    if (!receptor.alive()) continue;
-    int first[3]{};
-    for (int d = 0; d < domain.dimension(); ++d)
-      first[d] = static_cast<int>(std::floor(receptor.place[d] / domain.spacing()[d]));
-    for (int z = -(domain.dimension() == 3); z <= (domain.dimension() == 3); ++z)
-      for (int y = -1; y <= 1; ++y) {
-        const int j = (domain.is_wall(1) ? first[1] + y : domain.image(1, first[1] + y)) - layout.begin[1];
-        const int k = (domain.is_wall(2) ? first[2] + z : domain.image(2, first[2] + z)) - layout.begin[2];
-        if (j >= 0 && j < layout.cells[1] && k >= 0 && k < layout.cells[2])
-          (*rows)[j + std::size_t(layout.cells[1]) * k] = 1;
-      }
-  }
 }
 
 PetscErrorCode Adhesion::add_power(const FlowLook &, double *power) {
-  std::vector<Real3> places, velocities;
-  const auto add_place = [&](const double *place) { places.push_back({place[0], place[1], place[2]}); };
   PetscFunctionBeginUser;
-  for (const Bond &bond : bonds_) {
-    add_place(receptors_[bond.receptor].place);
-    add_place(other_end(bond) ? other_end(bond) : receptors_[bond.receptor].place);
-  }
-  PetscCall(find_velocity(places, &velocities));
-  for (std::size_t b = 0; b < bonds_.size(); ++b)
-    for (int d = 0; d < 3; ++d) {
-      *power += bonds_[b].pull[d] * velocities[2 * b][d];
-      if (other_end(bonds_[b])) *power -= bonds_[b].pull[d] * velocities[2 * b + 1][d];
-    }
+  PetscCall(forces_.add_power(power));
   PetscFunctionReturn(0);
-}
-
-std::vector<BodyBonds> Adhesion::measure() const {
-  std::map<int, BodyBonds> of;
-  for (const Receptor &receptor : receptors_)
-    if (receptor.alive()) of[static_cast<int>(receptor.body)].body = static_cast<int>(receptor.body);
-  const auto add_to = [&](std::size_t r, const Bond &bond, double sign) {
-    BodyBonds &body = of[static_cast<int>(receptors_[r].body)];
-    ++body.bonds;
-    for (int d = 0; d < 3; ++d) body.force[d] += sign * bond.pull[d];
-    body.tension += bond.tension;
-    body.age += flow_.now.time - receptors_[r].since;
-  };
-  for (const Bond &bond : bonds_) {
-    add_to(bond.receptor, bond, 1);
-    if (bond.other >= 0) add_to(static_cast<std::size_t>(bond.other), bond, -1);
-  }
-  std::vector<BodyBonds> all;
-  for (auto &[number, body] : of) {
-    body.tension /= std::max(body.bonds, 1);
-    body.age /= std::max(body.bonds, 1);
-    all.push_back(body);
-  }
-  return all;
-}
-
-std::vector<Adhesion::Line> Adhesion::lines() const {
-  std::vector<Line> lines;
-  for (const Bond &bond : bonds_) {
-    const Receptor &receptor = receptors_[bond.receptor];
-    const Real3 way = way_to(receptor, bond.other < 0 ? receptor.anchor : receptors_[bond.other].place);
-    Line line{static_cast<int>(receptor.body), number_of(receptors_, bond.other), {}, {}, bond.tension, receptor.since};
-    for (int d = 0; d < 3; ++d) {
-      line.from[d] = receptor.place[d];
-      line.to[d] = receptor.place[d] + way[d];
-    }
-    lines.push_back(line);
-  }
-  return lines;
 }
 
 }  // namespace eulastic

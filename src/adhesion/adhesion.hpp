@@ -1,41 +1,32 @@
 // Adhesion: bonds between receptors of two bodies, or of a body and a wall, that form and break at random and pull as
 // springs; docs/method.md, section 21.
+//
+// Receptors lie with the bodies in boxes (boxes/receptors.hpp) and are known on the rank that has the body. Ranks tell
+// each other of those alone that are near another body. Both ends of a bond draw the same random numbers.
 #pragma once
 
+#include "adhesion/adhesion_pair.hpp"
+#include "adhesion/bond_records.hpp"
+#include "adhesion/near_bodies.hpp"
+#include "adhesion/point_forces.hpp"
 #include "adhesion/receptor_bins.hpp"
-#include "adhesion/receptors.hpp"
 #include "adhesion/surface_feet.hpp"
+#include "boxes/boxed_bodies.hpp"
 #include "parts/flow.hpp"
 #include "parts/flow_part.hpp"
 
-#include <utility>
+#include <map>
+#include <set>
 #include <vector>
 
 namespace eulastic {
 
-/// A bond that has formed or broken.
-struct BondEvent {
-  double time;
-  bool formed;
-  int body, partner;    ///< numbers of bodies; partner 0: a wall or a surface on the grid
-  int pair;             ///< of AdhesionSpec::pairs
-  double tension, age;  ///< of a bond that breaks
-};
-
-/// What the bonds of a body do.
-struct BodyBonds {
-  int body;
-  int bonds = 0;
-  Real3 force{};       ///< on the body
-  double tension = 0;  ///< mean of its bonds
-  double age = 0;      ///< mean of its bonds
-};
-
 class Adhesion final : public FlowPart {
 public:
-  Adhesion(Flow *flow, BoxedBodies *boxed, const AdhesionSpec &spec) : flow_(*flow), boxed_(*boxed), spec_(spec) {}
+  Adhesion(Flow *flow, BoxedBodies *boxed, const AdhesionSpec &spec)
+      : flow_(*flow), boxed_(*boxed), spec_(spec), forces_(*flow) {}
 
-  std::size_t bytes() const override { return receptors_.size() * sizeof(Receptor) + bonds_.size() * sizeof(Bond); }
+  std::size_t bytes() const override;
   PetscErrorCode carry(CarriedState *state) override;
   PetscErrorCode start() override;
   PetscErrorCode resume() override;
@@ -44,61 +35,116 @@ public:
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  void mark_forced_rows(std::vector<char> *rows) const override;
+  PetscErrorCode end_step() override;
+  void mark_forced_rows(std::vector<char> *rows) const override { forces_.mark_rows(rows); }
   PetscErrorCode add_power(const FlowLook &look, double *power) override;
 
-  /// Of all bodies with receptors, by their numbers; the same on all ranks.
-  std::vector<BodyBonds> measure() const;
-  /// Both ends of every bond and its tension, the same on all ranks.
-  struct Line {
-    int body, partner;
-    Real3 from, to;
-    double tension, since;
-  };
-  std::vector<Line> lines() const;
-  /// Since the last call; the same on all ranks.
-  std::vector<BondEvent> take_events() { return std::exchange(events_, {}); }
+  const std::vector<AdhesionPair> &pairs() const { return spec_.pairs; }
+  /// Places receptors on bodies that have none. Collective, as all that follow.
+  PetscErrorCode place_on_bodies();
+  PetscErrorCode measure(BondTotals *totals);
+  /// Of the bodies that this rank owns (BodyRange), in their order, of `bodies`.
+  PetscErrorCode measure(int bodies, std::vector<BodyBonds> *owned) const;
+  /// All bonds, on rank 0.
+  PetscErrorCode lines(std::vector<BondLine> *lines) const;
+  /// All that has formed or broken since the last call, on rank 0.
+  PetscErrorCode take_events(std::vector<BondEvent> *events);
 
 private:
-  /// A bond with its tension: the pull on a receptor, and on the other one, unless that is a wall.
+  /// A bond as one of its receptors sees it.
   struct Bond {
-    std::size_t receptor;
-    std::ptrdiff_t other;  ///< index; negative: the anchor on a wall or a surface of the grid
-    Real3 pull;
+    std::size_t body, receptor;  ///< positions in the list of bodies and in that of its receptors
+    Real3 pull;                  ///< on the receptor
     double tension;
   };
-  /// From a receptor to what it is bound to, the shortest way across periodic sides.
-  Real3 way_to(const Receptor &from, const double to[3]) const;
+  /// A receptor of this or another rank that is near another body.
+  struct NearReceptor {
+    ReceptorName name;
+    int species, rank;
+    bool is_free;  ///< when the step began
+    ReceptorName partner;
+    Real3 place;
+  };
+  /// A receptor wants to bind to one of another body.
+  struct Proposal {
+    ReceptorName from, to;
+    int pair, rank;
+    double distance;
+    bool accepted;
+  };
+
+  /// What a bond does to a body.
+  struct End {
+    int body, pair;
+    ReceptorName receptor;
+    Real3 anchor, force;
+    double tension, age;
+  };
+
+  const std::vector<FreeBodies::Body> &bodies() const { return boxed_.bodies().bodies(); }
+  ReceptorName name_of(std::size_t body, std::size_t receptor) const {
+    return {bodies()[body].number, static_cast<int>(receptor)};
+  }
+  Receptor *find_own(const ReceptorName &name);
+  const NearReceptor *find_near(const ReceptorName &name) const;
+  /// visit(position of the body, position of the receptor, receptor) for those of this rank.
+  template <class Visit>
+  void for_receptors(const Visit &visit) {
+    for (std::size_t b = 0; b < bodies().size(); ++b) {
+      std::vector<Receptor> &receptors = boxed_.receptors(b);
+      for (std::size_t r = 0; r < receptors.size(); ++r) visit(b, r, &receptors[r]);
+    }
+  }
+  /// From a place to another, the shortest way across periodic sides.
+  Real3 way(const Real3 &from, const Real3 &to) const;
   const kernels::BondLaw &law(const Receptor &receptor) const { return spec_.pairs[int(receptor.pair)].law; }
-  bool is_on_grid(const AdhesionPair &pair) const;
-  const double *other_end(const Bond &bond) const;
+  bool is_on_grid(const AdhesionPair &pair) const { return !pair.to_wall() && !flow_.now.phases[pair.second].boxed; }
+  bool is_of_bodies(const AdhesionPair &pair) const { return !pair.to_wall() && !is_on_grid(pair); }
+  double reach_of_bodies() const;
+
+  PetscErrorCode look_around();
+  Extent hull_of(const FreeBodies::Body &body) const;
+  PetscErrorCode ask_grid(double dt);
+  struct Question;
+  void answer(double dt, Question *question) const;
+  bool is_near(const Real3 &place, const Extent &box, double reach) const;
+  PetscErrorCode tell_near();
+  void release_lost();
   void find_bonds();
-  /// At places that need not be wrapped around periodic sides, in their order. Collective, the same on all ranks.
-  PetscErrorCode find_velocity(const std::vector<Real3> &places, std::vector<Real3> *velocities) const;
-  PetscErrorCode move_receptors(double dt);
-  PetscErrorCode follow_surfaces();
-  /// In [0, 1), of this step; `which`: the kind of event.
-  double random(std::size_t receptor, unsigned which) const;
+  PetscErrorCode send_forces();
+  PetscErrorCode renew();
+
+  /// What random numbers are for.
+  enum class Chance : unsigned { rupture, bond_to_wall, bond_of_bodies };
+  /// In [0, 1), of this step.
+  double random(const ReceptorName &name, Chance chance) const;
+  void release(const ReceptorName &name, double tension, Receptor *receptor);
+  void bind(const ReceptorName &name, const ReceptorName &partner, int pair, const Real3 &anchor, Receptor *receptor);
   void break_bonds(double dt);
-  std::vector<char> find_free() const;
-  bool is_in_region(const AdhesionPair &pair, const Real3 &place) const;
-  Foot foot_on_wall(const AdhesionPair &pair, const Receptor &receptor) const;
-  PetscErrorCode form_bonds_to_walls(double dt, const std::vector<char> &free);
-  struct Candidate;
-  Candidate nearest_partner(std::size_t receptor, const ReceptorBins &bins) const;
-  void form_bonds_of_bodies(double dt, const std::vector<char> &free);
-  void note_formed(std::size_t receptor);
-  void release(Receptor *receptor, double tension);
-  /// Adds factor times the force per mass of a point force to a field on owned faces.
-  void add_at(const double place[3], const Real3 &force, double factor, Field *field) const;
-  void add(const std::vector<WeightedTarget> &targets) const;
+  Foot foot_on_wall(const AdhesionPair &pair, const Real3 &place) const;
+  void form_bonds_to_walls(double dt);
+  void find_proposals(double dt, std::vector<Proposal> *proposals, std::vector<int> *to);
+  void judge(const std::set<ReceptorName> &wanting, std::vector<Proposal> *proposals);
+  PetscErrorCode form_bonds_of_bodies(double dt);
+  PetscErrorCode sum_events();
+  void find_body(End *end) const;
+  PetscErrorCode find_ends(std::vector<End> *ends) const;
 
   Flow &flow_;
   BoxedBodies &boxed_;
   AdhesionSpec spec_;
-  std::vector<Receptor> receptors_;
-  std::vector<Bond> bonds_;
+  PointForces forces_;
+  std::vector<Bond> bonds_;                                          ///< of receptors of this rank, in their order
+  std::vector<NearReceptor> near_;                                   ///< by their names
+  std::map<int, Surroundings> around_;                               ///< by the numbers of the bodies of this rank
+  long fits_ = -1;                                                   ///< of the boxes that around_ is of
+  double travel_ = 0;                                                ///< cells that surfaces may have moved since
+  std::map<ReceptorName, std::vector<std::pair<int, Real3>>> feet_;  ///< pair, and place on a surface on the grid
+  std::set<ReceptorName> broken_;  ///< of this rank, whose bond has broken in this step
   std::vector<BondEvent> events_;
+  double most_ = 0;                               ///< largest number of bonds of any body
+  std::int64_t formed_ = 0, lost_ = 0;            ///< bonds that have formed and broken, on all ranks
+  std::int64_t formed_here_ = 0, lost_here_ = 0;  ///< since these were summed
 };
 
 }  // namespace eulastic

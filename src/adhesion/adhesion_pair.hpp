@@ -1,13 +1,37 @@
 // Which surfaces adhere to which, and how.
 #pragma once
 
+#include "bodies/solid_mask.hpp"
 #include "grid/box.hpp"
 #include "kernels/bond.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace eulastic {
+
+/// Where walls and surfaces are adhesive.
+struct AdhesiveRegion {
+  Real3 low{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, high{HUGE_VAL, HUGE_VAL, HUGE_VAL};  ///< of a box
+  VoxelSpec file;                          ///< of cells; without a path: all cells
+  std::shared_ptr<const SolidMask> cells;  ///< those that the file fills at least in part, once it has been read
+
+  bool is_given() const { return low[0] != -HUGE_VAL || !file.path.empty(); }
+  /// Whether a place, which need not be wrapped around periodic sides, is in the box and in one of the cells.
+  bool has(const Box &domain, const Real3 &place) const {
+    Int3 cell{};
+    for (int d = 0; d < domain.dimension(); ++d) {
+      const double length = domain.domain_shape().length[d];
+      const double wrapped = domain.is_wall(d) ? place[d] : place[d] - length * std::floor(place[d] / length);
+      if (!(wrapped >= low[d] && wrapped <= high[d])) return false;
+      cell[d] = std::clamp(static_cast<int>(wrapped / domain.spacing()[d]), 0, domain.domain_cells()[d] - 1);
+    }
+    return !cells || cells->has(cell);
+  }
+};
 
 struct AdhesionPair {
   static constexpr int wall = -1;
@@ -15,8 +39,7 @@ struct AdhesionPair {
   int first = 0, second = 0;  ///< species, the second one may be on the grid; `wall`: the walls of the box
   kernels::BondLaw law;
   double density = 0;  ///< receptors per area (2-D: per length) of the bodies of both species
-  Real3 low{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
-      high{HUGE_VAL, HUGE_VAL, HUGE_VAL};  ///< where walls and surfaces are adhesive
+  AdhesiveRegion region;
 
   bool to_wall() const { return second == wall; }
   bool joins(int one, int two) const { return (first == one && second == two) || (first == two && second == one); }

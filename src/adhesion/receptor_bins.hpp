@@ -1,7 +1,7 @@
 // Receptors in bins at least as wide as bonds reach, so that partners are looked for in the bins around one alone.
 #pragma once
 
-#include "adhesion/receptors.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,17 +17,17 @@ public:
   ReceptorBins(const Domain &domain, double reach) : domain_(domain) {
     for (int d = 0; d < domain.dimension(); ++d) count_[d] = std::max(1, static_cast<int>(length(d) / reach));
   }
-  void add(std::size_t which, const Receptor &receptor) { bins_[bin_of(receptor)].push_back(which); }
-  /// visit(which) for those in the bins around a receptor, each once, in an order that depends on their places alone.
+  void add(std::size_t which, const Real3 &place) { bins_[bin_of(place)].push_back(which); }
+  /// visit(which) for those in the bins around a place, each once.
   template <class Visit>
-  void for_near(const Receptor &receptor, const Visit &visit) const;
+  void for_near(const Real3 &place, const Visit &visit) const;
 
 private:
   double length(int d) const { return domain_.domain_shape().length[d]; }
-  std::array<int, 3> bin_of(const Receptor &receptor) const {
+  std::array<int, 3> bin_of(const Real3 &place) const {
     std::array<int, 3> bin{};
     for (int d = 0; d < domain_.dimension(); ++d) {
-      const int plain = static_cast<int>(std::floor(receptor.place[d] / length(d) * count_[d]));
+      const int plain = static_cast<int>(std::floor(place[d] / length(d) * count_[d]));
       bin[d] = domain_.is_wall(d) ? std::clamp(plain, 0, count_[d] - 1) : (plain % count_[d] + count_[d]) % count_[d];
     }
     return bin;
@@ -48,8 +48,8 @@ private:
 };
 
 template <class Visit>
-void ReceptorBins::for_near(const Receptor &receptor, const Visit &visit) const {
-  const std::array<int, 3> own = bin_of(receptor);
+void ReceptorBins::for_near(const Real3 &place, const Visit &visit) const {
+  const std::array<int, 3> own = bin_of(place);
   for (const int x : near(0, own[0]))
     for (const int y : near(1, own[1]))
       for (const int z : near(2, own[2]))

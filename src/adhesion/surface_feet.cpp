@@ -1,5 +1,7 @@
 #include "adhesion/surface_feet.hpp"
 
+#include "adhesion/grid_place.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,11 +9,13 @@
 namespace eulastic {
 namespace {
 
+bool is_cut(double phi) { return phi > 1e-3 && phi < 1 - 1e-3; }
+
 // Of the plane in a cell, the way from the cell's centre to its point that is nearest to `from`, itself seen from the
 // centre; clamped to the cell. False where the cell is not cut.
 bool nearest_in_cell(const Box &box, ConstView phi, const Int3 &cell, const Real3 &from, Real3 *nearest) {
   const double here = phi(cell[0], cell[1], cell[2]);
-  if (!(here > 1e-3 && here < 1 - 1e-3)) return false;
+  if (!is_cut(here)) return false;
   const Real3 &h = box.spacing();
   Real3 normal{};
   double squares = 0;
@@ -32,47 +36,49 @@ bool nearest_in_cell(const Box &box, ConstView phi, const Int3 &cell, const Real
 
 }  // namespace
 
-PetscErrorCode find_feet(const Domain &domain, const Phase &phase, const std::vector<Real3> &places,
-                         const std::vector<char> &wanted, std::vector<Foot> *feet) {
-  const int dimension = domain.dimension(), deep = dimension == 3 ? foot_reach : 0;
+Foot find_foot(const Domain &domain, const Phase &phase, const Real3 &place) {
+  const int deep = domain.dimension() == 3 ? foot_reach : 0;
   const Real3 &h = domain.spacing();
-  const Layout &layout = domain.layout();
-  const ConstView phi = std::as_const(phase.fraction)[0];
-  PetscFunctionBeginUser;
-  feet->assign(places.size(), {});
-  for (std::size_t p = 0; p < places.size(); ++p) {
-    if (!wanted[p]) continue;
-    Int3 cell{}, plain{};
-    for (int d = 0; d < dimension; ++d) {
-      plain[d] = static_cast<int>(std::floor(places[p][d] / h[d]));
-      cell[d] = domain.is_wall(d) ? std::clamp(plain[d], 0, domain.domain_cells()[d] - 1) : domain.image(d, plain[d]);
-    }
-    if (domain.owner(cell[0], cell[1], cell[2]) != domain.rank()) continue;
-    double least = HUGE_VAL;
-    for (int z = -deep; z <= deep; ++z)
-      for (int y = -foot_reach; y <= foot_reach; ++y)
-        for (int x = -foot_reach; x <= foot_reach; ++x) {
-          const int step[3] = {x, y, z};
-          Int3 local{};
-          Real3 from{}, nearest{};
-          for (int d = 0; d < dimension; ++d) {
-            local[d] = cell[d] + step[d] - layout.begin[d];
-            from[d] = places[p][d] - (plain[d] + step[d] + 0.5) * h[d];
-          }
-          if (!nearest_in_cell(domain, phi, local, from, &nearest)) continue;
-          double distance = 0;
-          for (int d = 0; d < dimension; ++d) distance += std::pow(nearest[d] - from[d], 2);
-          if (distance >= least) continue;
-          least = distance;
-          Foot &foot = (*feet)[p];
-          foot.found = 1;
-          for (int d = 0; d < dimension; ++d) foot.place[d] = places[p][d] + (nearest[d] - from[d]);
+  const Int3 shift = GridPlace(domain, place).shift;
+  const ConstView phi = phase.fraction[0];
+  Int3 plain{};
+  for (int d = 0; d < domain.dimension(); ++d) plain[d] = static_cast<int>(std::floor(place[d] / h[d]));
+  double least = HUGE_VAL;
+  Foot foot;
+  for (int z = -deep; z <= deep; ++z)
+    for (int y = -foot_reach; y <= foot_reach; ++y)
+      for (int x = -foot_reach; x <= foot_reach; ++x) {
+        const Int3 step{x, y, z};
+        Int3 local{};
+        Real3 from{}, nearest{};
+        for (int d = 0; d < domain.dimension(); ++d) {
+          local[d] = plain[d] + step[d] + shift[d];
+          from[d] = place[d] - (plain[d] + step[d] + 0.5) * h[d];
         }
-  }
-  constexpr int numbers = sizeof(Foot) / sizeof(double);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, feet->data(), static_cast<int>(numbers * feet->size()), MPI_DOUBLE, MPI_SUM,
-                             domain.comm()));
-  PetscFunctionReturn(0);
+        if (!nearest_in_cell(domain, phi, local, from, &nearest)) continue;
+        double distance = 0;
+        for (int d = 0; d < domain.dimension(); ++d) distance += std::pow(nearest[d] - from[d], 2);
+        if (distance >= least) continue;
+        least = distance;
+        foot.found = true;
+        for (int d = 0; d < domain.dimension(); ++d) foot.place[d] = place[d] + (nearest[d] - from[d]);
+      }
+  return foot;
+}
+
+bool has_surface_in(const Domain &domain, const Phase &phase, const Extent &block) {
+  const ConstView phi = phase.fraction[0];
+  std::vector<int> local[3];
+  for (int d = 0; d < 3; ++d)
+    for (int i = block.begin[d]; i < std::min(block.end[d], block.begin[d] + domain.domain_cells()[d]); ++i) {
+      const int at = domain.image(d, i) - domain.layout().begin[d];
+      if (at >= 0 && at < domain.cells()[d]) local[d].push_back(at);
+    }
+  for (const int k : local[2])
+    for (const int j : local[1])
+      for (const int i : local[0])
+        if (is_cut(phi(i, j, k))) return true;
+  return false;
 }
 
 }  // namespace eulastic

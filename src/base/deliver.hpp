@@ -16,7 +16,10 @@ PetscErrorCode deliver(MPI_Comm comm, const std::vector<int> &ranks, std::vector
   const PetscInt *arriving;
   std::vector<PetscSFNode> targets;
   MpiType record_type;
+  int size;
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (size == 1) PetscFunctionReturn(0);
   for (const int rank : ranks) targets.push_back({rank, 0});
   PetscCall(PetscSFCreate(comm, sf.put()));
   PetscCall(PetscSFSetGraph(sf.get(), 1, static_cast<PetscInt>(targets.size()), nullptr, PETSC_OWN_POINTER,

@@ -1,6 +1,8 @@
 #include "bodies/near_places.hpp"
 
 #include "base/deliver.hpp"
+#include "grid/cell_ranks.hpp"
+#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,19 +20,10 @@ double reach(const Surface &surface, const BodyPlace &place, int d) {
 std::vector<int> positions_near(const Domain &domain, int d, const Surface &surface, const BodyPlace &place) {
   const int cells = domain.domain_cells()[d];
   const double h = domain.spacing()[d], centre = place.centre[d], far = reach(surface, place, d) + h;
-  int first = 0, last = cells - 1;
-  if (d < domain.dimension() && 2 * far + h < domain.domain_shape().length[d]) {
-    first = static_cast<int>(std::floor((centre - far) / h));
-    last = static_cast<int>(std::floor((centre + far) / h));
-    if (domain.is_wall(d)) first = std::max(first, 0), last = std::min(last, cells - 1);
-  }
-  std::vector<int> positions;
-  for (int i = first; i <= last;) {
-    const int cell = (i + cells) % cells, position = domain.split().position_along(d, cell);
-    if (positions.empty() || position != positions.front()) positions.push_back(position);
-    i += domain.split().starts[d][position + 1] - cell;
-  }
-  return positions;
+  if (d >= domain.dimension() || 2 * far + h >= domain.domain_shape().length[d])
+    return positions_over(domain, d, 0, cells);
+  int first = static_cast<int>(std::floor((centre - far) / h)), last = static_cast<int>(std::floor((centre + far) / h));
+  return positions_over(domain, d, first, last + 1);
 }
 
 }  // namespace

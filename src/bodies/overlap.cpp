@@ -15,13 +15,13 @@ constexpr double skin = 5e-4;    // in cells: bodies that overlap by less count 
 
 bool has_shape(const SpeciesSpec &spec) { return spec.shape != Shape::voxels && spec.shape != Shape::state; }
 bool has_ends(const SpeciesSpec &spec) {
-  return has_shape(spec) && spec.shape != Shape::cylinder && !is_attached(spec.shape);
+  return has_shape(spec) && spec.shape != Shape::cylinder && !is_anchored(spec.shape);
 }
 
 // Returns whether bodies of `two` are compared with those of `one`, an earlier species or the same.
 bool is_wanted(const SpeciesSpec &one, const SpeciesSpec &two) {
   if (!has_shape(one) || !has_shape(two) || two.placement == Placement::random) return false;
-  if (one.material().attached && two.material().attached) return false;
+  if (one.material().anchored && two.material().anchored) return false;
   return &one != &two || two.contact != Contact::merge;
 }
 

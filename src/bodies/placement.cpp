@@ -45,7 +45,7 @@ std::string why_no_lumen(const SpeciesSpec &spec, const DomainShape &grid, const
 std::string why_not(const SpeciesSpec &spec, const Surface &surface, const DomainShape &grid, const BodyPlace &place) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "rotates only about z in 2-D";
-  const bool may_cross = spec.shape == Shape::cylinder || is_attached(spec.shape);
+  const bool may_cross = spec.shape == Shape::cylinder || is_anchored(spec.shape);
   if (may_cross && place.orientation != Real3{})
     return "cannot be rotated: cylinders, slabs and tubes have an axis instead of an orientation";
   if (is_tube(spec.shape)) return why_no_lumen(spec, grid, place.centre);
@@ -168,7 +168,7 @@ std::string place_bodies(const SpeciesSpec &spec, const DomainShape &grid, Place
   if (spec.shape == Shape::voxels || spec.shape == Shape::state) return {};  // from files
   if (std::string wrong = why_no_shape(spec, dimension); !wrong.empty()) return wrong;
   BodyPlace place{{grid.length[0] / 2, grid.length[1] / 2, grid.length[2] / 2}, spec.orientation};
-  if (is_attached(spec.shape) && spec.placement != Placement::one) return "slabs and tubes are placed once";
+  if (is_anchored(spec.shape) && spec.placement != Placement::one) return "slabs and tubes are placed once";
   Placing placing(spec, grid, kept, places);
   if (spec.shape == Shape::slab) {
     place.centre[spec.axis] = (spec.interval[0] + spec.interval[1]) / 2;

@@ -17,6 +17,8 @@ public:
 
   /// Sets the bits of the cells of `window` in which `fraction` is not 0.
   void add(const CellWindow &window, ConstView fraction);
+  /// Returns whether a cell is marked.
+  bool has(const Int3 &cell) const { return bits_[word(cell[0], cell[1], cell[2])] >> (cell[0] % 64) & 1; }
   /// Returns whether any marked cell touches `body`, whose centre is in the domain. If not, no cell contains parts of
   /// both.
   bool touches(const PlacedConvex &body) const;

@@ -7,7 +7,7 @@ namespace eulastic {
 Material SpeciesSpec::material() const {
   const double at_rest = with_law(*this, [](const auto &chosen) { return chosen.shear_modulus(); });
   return {at_rest,
-          attached.value_or(is_attached(shape)),
+          anchored.value_or(is_anchored(shape)),
           is_membrane() ? Law::membrane : law,
           c1,
           c2,

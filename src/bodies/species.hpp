@@ -18,7 +18,7 @@ enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab, tube, constrict
 /// Whether a shape is a vessel wall: infinite and anchored to the boundaries.
 constexpr bool is_tube(Shape shape) { return shape == Shape::tube || shape == Shape::constricted_tube; }
 /// Whether bodies of a shape are anchored unless -NAME_anchored says otherwise.
-constexpr bool is_attached(Shape shape) { return shape == Shape::slab || is_tube(shape); }
+constexpr bool is_anchored(Shape shape) { return shape == Shape::slab || is_tube(shape); }
 enum class Placement { one, list, lattice, random };
 /// How bodies of one species meet: each in a box of its own, so that they never merge, or all in one phase of the grid.
 enum class Contact { separate, merge };
@@ -51,7 +51,7 @@ struct SpeciesSpec {
   Membrane membrane{};              ///< Law::membrane
   StretchForce stretch_force{};     ///< Law::membrane
   RigidMotion motion;               ///< Law::rigid
-  std::optional<bool> attached;     ///< default by shape: is_attached()
+  std::optional<bool> anchored;     ///< default by shape: is_anchored()
   std::optional<Contact> contact;   ///< default: Config::boxes()
   Real3 initial_stretch{1, 1,
                         1};  ///< l in B = diag(l^2), rotated with the body; the shape is that of the stretched state
@@ -71,7 +71,7 @@ struct SpeciesSpec {
 
   /// Whether it is a vessel or an obstacle, on whose surface the stress of the fluid is measured.
   bool bears_load() const {
-    return law == Law::rigid || (!is_membrane() && (attached.value_or(is_attached(shape)) || shape == Shape::voxels));
+    return law == Law::rigid || (!is_membrane() && (anchored.value_or(is_anchored(shape)) || shape == Shape::voxels));
   }
   /// Directions in which a rigid body moves relative to the grid; in the others it rests or slides along itself.
   std::array<bool, 3> travelling(int dimension) const {

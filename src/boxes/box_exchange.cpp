@@ -242,9 +242,12 @@ PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions,
           });
     };
     in_order(add_own, [&](int, const Parcel &parcel) {
-      for (const WeightedTarget &target : targets)
-        for (std::size_t n = 0; n < parcel.slots.size(); ++n)
-          if (own.has(parcel.offsets[n] % size))
+      const auto place_of = [&](std::ptrdiff_t offset) {  // offsets ascend
+        return std::lower_bound(parcel.offsets.begin(), parcel.offsets.end(), offset) - parcel.offsets.begin();
+      };
+      for (int f = 0; f < components_; ++f)
+        for (auto n = place_of(f * size + own.begin), end = place_of(f * size + own.end); n < end; ++n)
+          for (const WeightedTarget &target : targets)
             add_values(&received_[parcel.slots[n]], 1, target.factor, target.field->data() + parcel.offsets[n]);
     });
   });

@@ -1,5 +1,5 @@
-// Values between the grid and boxes that lie anywhere in the domain, each of them whole on one rank: velocities come to
-// the boxes of bodies, their forces go back to the grid.
+// Exchanges values between the grid and boxes anywhere in the domain, each of which is complete on one rank: velocities
+// go to the boxes of bodies, their forces to the grid.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -14,7 +14,7 @@
 
 namespace eulastic {
 
-/// The values of a field in segments alone.
+/// The values of a field in segments only.
 class SegmentValues {
 public:
   void take(const Field &field, const ActiveSegments &segments);
@@ -37,7 +37,7 @@ public:
     const Box *box;
     int number;
   };
-  /// What a box adds to the grid; nothing, if these are null.
+  /// Values that a box adds to the grid; none if these are null.
   struct Contribution {
     const SegmentValues *values = nullptr;
     const ActiveSegments *segments = nullptr;
@@ -46,16 +46,16 @@ public:
   /// For fields of `components` components.
   BoxExchange(const Domain &domain, int components) : domain_(&domain), components_(components) {}
 
-  /// Sets the boxes of this rank. A box may cross periodic sides, and even be longer than the domain; it ends at sides
-  /// of any other kind. `fetches_only`: nothing goes from the boxes to the grid. Collective.
+  /// Sets the boxes of this rank. A box may cross periodic boundaries, and even be longer than the domain; it ends at
+  /// boundaries of any other kind. `fetches_only`: the boxes send nothing to the grid. Collective.
   PetscErrorCode connect(const std::vector<NumberedBox> &boxes, bool fetches_only = false);
 
-  /// Fetches what the boxes of this rank need of the values that other ranks own. Collective.
+  /// Fetches the values of other ranks that the boxes of this rank need. Collective.
   PetscErrorCode fetch(const Field &grid);
   /// Copies the grid's values to all points of box b, ghosts excluded, after fetch(grid).
   void copy_to_box(std::size_t b, const Field &grid, Field &to) const;
   /// Adds values of every box to the owned values of fields of the grid. Where boxes overlap their values are added in
-  /// the order of the numbers, so that the sum does not depend on who owns the boxes. Collective.
+  /// the order of the numbers, so that the sum does not depend on the owners of the boxes. Collective.
   PetscErrorCode add(const std::vector<Contribution> &contributions, const std::vector<WeightedTarget> &targets);
   /// Calls visit(number, offset, values) for all points of this rank's grid that lie in boxes, box after box in the
   /// order of the numbers: `offset` in a component of the grid's fields, `values`: the components of the box's field
@@ -77,7 +77,8 @@ private:
     int number;
     std::vector<Run> own, remote;  ///< of this rank's grid, of the others'
   };
-  /// Values from boxes of other ranks with one number: where they are in `received_`, and offsets in the grid's field.
+  /// Values from boxes of other ranks with one number: where they are in `received_`, and offsets in the grid's field,
+  /// ascending.
   struct Parcel {
     std::vector<PetscInt> slots, offsets;
   };

@@ -269,10 +269,10 @@ PetscErrorCode BoxedBodies::give_surface_measures(const std::vector<BodyInBox> &
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::forget_unresolved(const std::vector<double> &trace) {
+PetscErrorCode BoxedBodies::reset_unresolved(const std::vector<double> &trace) {
   long count = 0;
   PetscFunctionBeginUser;
-  if (exist()) PetscCall(bodies_.forget_unresolved(trace, &count));
+  if (exist()) PetscCall(bodies_.reset_unresolved(trace, &count));
   flow_.now.forgotten += count;
   PetscFunctionReturn(0);
 }

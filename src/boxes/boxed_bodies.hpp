@@ -1,5 +1,5 @@
-// The bodies of a flow that lie in boxes of their own (boxes/free_bodies.hpp): which rank has them, their forces on the
-// flow, and how they are seen on the grid.
+// The bodies of a flow in boxes of their own (boxes/free_bodies.hpp): their ranks, their forces on the flow, and their
+// fields on the grid.
 #pragma once
 
 #include "boxes/free_bodies.hpp"
@@ -29,14 +29,16 @@ public:
   PetscErrorCode add_packed(const std::vector<double> &packed);
   /// Adds copies of bodies of this rank to it, as far away as given: label, that of the copy. follow() comes next.
   PetscErrorCode add_copies(const std::vector<std::pair<int, int>> &copies, const std::map<int, Int3> &shifts);
-  /// Takes bodies of this rank away, by their places in list(), ascending; follow() comes next.
+  /// Removes bodies of this rank, by their positions in list(), ascending; follow() must come next.
   void remove(const std::vector<std::size_t> &which) { bodies_.remove(which); }
-  /// Takes away those of all ranks; others are added then.
+  /// Removes the bodies of all ranks; others are added afterwards.
   void clear() { bodies_.clear(); }
-  /// Bodies have been added or taken away on some ranks. Collective.
+  /// Updates the boxes after bodies have been added or removed on some ranks. Collective.
   PetscErrorCode refit();
   const FreeBodies &bodies() const { return bodies_; }
-  /// Those of this rank, as they are, without velocity.
+  /// Of the body at a place in bodies().
+  std::vector<Receptor> &receptors(std::size_t body) { return bodies_.receptors(body); }
+  /// The bodies of this rank at their own time, without velocity.
   std::vector<BodyInBox> list() const { return bodies_.list(); }
   /// Solid fraction of all bodies of every species in boxes, on the grid. Collective.
   PetscErrorCode show_all_fractions(std::map<int, Phase> *phases);
@@ -53,8 +55,8 @@ public:
                                     std::vector<SurfaceSample> *samples) override;
   PetscErrorCode place_markers() { return bodies_.place_markers(); }
   void mark_forced_rows(std::vector<char> *rows) const override { bodies_.mark_rows(rows); }
-  /// Mends B where the grid does not resolve it. `trace`: the largest tr B of every species. Collective.
-  PetscErrorCode forget_unresolved(const std::vector<double> &trace);
+  /// Resets B where the grid does not resolve it. `trace`: the largest tr B of every species. Collective.
+  PetscErrorCode reset_unresolved(const std::vector<double> &trace);
 
   /// Bodies of this rank with the velocity, at its time: copies that have been moved over `behind`, or the bodies
   /// themselves if that is 0. Valid until forget_looks(). Collective.

@@ -1,6 +1,7 @@
 #include "boxes/free_bodies.hpp"
 
 #include "base/deliver.hpp"
+#include "boxes/receptors.hpp"
 #include "field/fed_velocity.hpp"
 #include "field/sides.hpp"
 #include "membranes/stretch_force.hpp"
@@ -77,9 +78,10 @@ void FreeBodies::set_surroundings(bool drifts, const std::vector<const Phase *> 
 }
 
 PetscErrorCode FreeBodies::add(int number, int species, const Box &box, Phase &&phase,
-                               std::vector<SurfaceMarker> &&markers) {
+                               std::vector<SurfaceMarker> &&markers, std::vector<Receptor> &&receptors) {
   PetscFunctionBeginUser;
   Body body{number, species, box, std::move(phase), {}, std::move(markers)};
+  body.receptors = std::move(receptors);
   body.phase.rows.find_in_box(box, std::as_const(body.phase).fraction[0],
                               rows_reach(body.phase.material, domain_->spec().ghosts));
   PetscCall(fit(&body, 0));
@@ -112,10 +114,14 @@ std::vector<double> FreeBodies::packed(std::size_t b) const {
   for (const Int3 &place : {layout.begin, layout.cells}) values.insert(values.end(), place.begin(), place.end());
   values.push_back(double(body.markers.size()));
   for_values(block, first_in(body.box, block), body.phase, [&](const double &value) { values.push_back(value); });
-  for (const SurfaceMarker &marker : body.markers) {
-    const auto numbers = marker.packed();
-    values.insert(values.end(), numbers.begin(), numbers.end());
-  }
+  const auto add = [&values](const auto &points) {
+    for (const auto &point : points) {
+      const auto numbers = point.packed();
+      values.insert(values.end(), numbers.begin(), numbers.end());
+    }
+  };
+  add(body.markers);
+  add(body.receptors);
   return values;
 }
 
@@ -150,9 +156,12 @@ PetscErrorCode FreeBodies::add_packed(const std::vector<double> &packed, const P
   const double *next = packed.data() + head;
   for_values(box, {0, 0, 0}, phase, [&](double &value) { value = *next++; });
   std::vector<SurfaceMarker> markers;
-  for (; next < packed.data() + packed.size(); next += SurfaceMarker::numbers)
+  std::vector<Receptor> receptors;
+  for (int m = 0; m < static_cast<int>(packed[head - 1]); ++m, next += SurfaceMarker::numbers)
     markers.push_back(SurfaceMarker::unpacked(next));
-  PetscCall(add(static_cast<int>(packed[0]), static_cast<int>(packed[1]), box, std::move(phase), std::move(markers)));
+  for (; next < packed.data() + packed.size(); next += Receptor::numbers) receptors.push_back(Receptor::unpacked(next));
+  PetscCall(add(static_cast<int>(packed[0]), static_cast<int>(packed[1]), box, std::move(phase), std::move(markers),
+                std::move(receptors)));
   PetscFunctionReturn(0);
 }
 
@@ -163,9 +172,17 @@ PetscErrorCode FreeBodies::add_copy(int number, int copy, const Int3 &shift, con
   std::vector<double> values = packed(original - bodies_.begin());
   values[0] = copy;
   for (int d = 0; d < 3; ++d) values[2 + d] += shift[d];
+  const std::size_t receptors = values.size() - original->receptors.size() * Receptor::numbers;
   // A marker's place at rest stays: only differences count.
   for (std::size_t m = original->markers.size(); m > 0; --m)
-    for (int d = 0; d < 3; ++d) values[values.size() - m * SurfaceMarker::numbers + 3 + d] += shift[d];
+    for (int d = 0; d < 3; ++d) values[receptors - m * SurfaceMarker::numbers + 3 + d] += shift[d];
+  values.resize(receptors);
+  for (const Receptor &receptor : original->receptors) {
+    Receptor moved{receptor.place};
+    for (int d = 0; d < 3; ++d) moved.place[d] += shift[d] * domain_->spacing()[d];
+    const auto numbers = moved.packed();
+    values.insert(values.end(), numbers.begin(), numbers.end());
+  }
   PetscCall(add_packed(values, like));
   PetscFunctionReturn(0);
 }
@@ -202,12 +219,10 @@ PetscErrorCode FreeBodies::give(const std::vector<int> &ranks, const std::vector
     return std::pair(one.number, one.begin) < std::pair(other.number, other.begin);
   });
   std::vector<double> values;
-  for (const Part &part : parts) {
-    values.insert(values.end(), part.values, part.values + part.count);
-    if (values.size() < head) continue;
-    const Phase &like = species[static_cast<int>(values[1])];
-    if (values.size() < head + packed_values(domain_->domain_shape(), like.tensor.centred, values.data())) continue;
-    PetscCall(add_packed(values, like));
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    values.insert(values.end(), parts[p].values, parts[p].values + parts[p].count);
+    if (p + 1 < parts.size() && parts[p + 1].number == parts[p].number) continue;
+    PetscCall(add_packed(values, species[static_cast<int>(values[1])]));
     values.clear();
   }
   PetscFunctionReturn(0);
@@ -276,6 +291,7 @@ PetscErrorCode FreeBodies::fit(Body *body, int layers) const {
   }
   const Box box(domain_->domain_shape(), begin, cells, domain_->spec().ghosts);
   Body fitted{body->number, body->species, box, {}, {}, std::move(body->markers)};
+  fitted.receptors = std::move(body->receptors);
   fitted.phase = empty_like(body->phase, fitted.box);
   copy_shared(body->box, body->phase.fraction, layers, &fitted.phase.fraction);
   copy_shared(body->box, body->phase.tensor.field, layers, &fitted.phase.tensor.field);
@@ -297,6 +313,7 @@ PetscErrorCode FreeBodies::fit_boxes(bool *changed, long *unresolved) {
   *changed = sums[0] > 0;
   *unresolved = sums[1];
   if (!*changed) PetscFunctionReturn(0);
+  ++fits_;
   std::vector<BoxExchange::NumberedBox> boxes;
   for (Body &body : bodies_) {
     PetscCall(fit(&body, domain_->spec().ghosts));
@@ -485,6 +502,7 @@ PetscErrorCode FreeBodies::advance_body(std::size_t b, const Step &step, const F
         work = memory.part(dimension, own);
   bring_velocity(b, step, velocity, &flow);
   PetscCall(move(body.box, step, flow, work, &body.phase));
+  move_receptors(body.box, step.dt, flow, body.phase, &body.receptors);
   if (is_membrane) PetscCall(move_membrane(step, flow, &body, work, unresolved));
   PetscFunctionReturn(0);
 }
@@ -536,7 +554,7 @@ PetscErrorCode FreeBodies::place_markers() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodies::forget_unresolved(const std::vector<double> &trace, long *count) {
+PetscErrorCode FreeBodies::reset_unresolved(const std::vector<double> &trace, long *count) {
   PetscFunctionBeginUser;
   *count = 0;
   bool any = false;
@@ -544,7 +562,7 @@ PetscErrorCode FreeBodies::forget_unresolved(const std::vector<double> &trace, l
   if (!any) PetscFunctionReturn(0);
   for (Body &body : bodies_) {
     if (!body.phase.material.elastic() || !may_be_unresolved(trace[body.species], domain_->dimension())) continue;
-    const long found = eulastic::forget_unresolved(body.box, body.phase);
+    const long found = eulastic::reset_unresolved(body.box, body.phase);
     if (found > 0) {
       PetscCall(extend(&body));
       PetscCall(find_force(&body));

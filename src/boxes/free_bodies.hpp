@@ -1,6 +1,6 @@
-// Elastic bodies, membranes and drops that are not attached and never merge with others: each lies in a box of its own,
-// an aligned block of the grid around the body, which is whole on one rank. Between the velocity that comes from the
-// grid and the force that goes back a body needs no message: docs/architecture.md.
+// Elastic bodies, membranes and drops that are not anchored and never merge with others: each lies in a box of its own,
+// an aligned block of the grid around the body, which is complete on one rank. Between receiving the velocity and
+// sending the force a body needs no message: docs/architecture.md.
 #pragma once
 
 #include "base/events.hpp"
@@ -9,6 +9,7 @@
 #include "drops/surface_tension.hpp"
 #include "field/net_force.hpp"
 #include "field/phase.hpp"
+#include "field/receptor.hpp"
 #include "membranes/membrane.hpp"
 #include "solids/interface.hpp"
 #include "solids/solid_transport.hpp"
@@ -30,6 +31,7 @@ public:
     std::vector<SurfaceMarker> markers = {};  ///< of a membrane, their cells not wrapped around periodic sides
     WallFilm film = {};                       ///< the same: walls in the box
     ActiveSegments tension_faces = {};        ///< with surface tension: those that feel that or stress
+    std::vector<Receptor> receptors = {};     ///< of adhesion
     const ActiveSegments &forced() const {
       return phase.material.surface_tension > 0 ? tension_faces : phase.tensor.stressed;
     }
@@ -40,32 +42,35 @@ public:
 
   /// Adds a body to this rank: `phase` has material, rule and the owned cells of phi and B on `box`, which may be any
   /// block that holds the body.
-  PetscErrorCode add(int number, int species, const Box &box, Phase &&phase, std::vector<SurfaceMarker> &&markers = {});
+  PetscErrorCode add(int number, int species, const Box &box, Phase &&phase, std::vector<SurfaceMarker> &&markers = {},
+                     std::vector<Receptor> &&receptors = {});
   /// The number, the species, first cell and cells of a block around a body of this rank and how many markers it has,
-  /// then phi and the components of B of that block and the markers: all that add_packed() needs.
+  /// then phi and the components of B of that block, the markers and the receptors: all that add_packed() needs.
   std::vector<double> packed(std::size_t body) const;
   static constexpr int head = 9;  ///< numbers before phi
-  /// How many values a body with this head has after it; `centred`: all components of B live at centres.
+  /// How many values a body with this head has after it, before its receptors; `centred`: all components of B live at
+  /// centres.
   static std::size_t packed_values(const DomainShape &domain, bool centred, const double *head);
   /// Adds such a body; `like`: a phase of the grid with its material and rule.
   PetscErrorCode add_packed(const std::vector<double> &packed, const Phase &like);
-  /// Adds a body like that of this rank with a number, so many cells away; `like`: as of add_packed().
+  /// Adds a body like that of this rank with a number, so many cells away; its receptors are free. `like`: as of
+  /// add_packed().
   PetscErrorCode add_copy(int number, int copy, const Int3 &shift, const Phase &like);
   /// Gives every body of this rank to one of `ranks`, in their order; `species`: phases with materials and rules of
   /// all. Collective.
   PetscErrorCode give(const std::vector<int> &ranks, const std::vector<Phase> &species);
-  /// Takes bodies of this rank away, by their places in bodies(), ascending; follow() comes next, on all ranks.
+  /// Removes bodies of this rank, by their positions in bodies(), ascending; follow() must come next, on all ranks.
   void remove(const std::vector<std::size_t> &which);
   void clear();
 
   /// Whether no wall holds the fluid, so that a net force of surfaces would move all of it, and where rigid bodies are
   /// that stay, solid fractions on the grid; before follow(), if any species has a surface that exerts forces.
   void set_surroundings(bool drifts, const std::vector<const Phase *> &rigid);
-  /// Makes boxes anew where bodies have come near an end of theirs; once after bodies were added. Collective.
+  /// Fits all boxes again if a body has come close to the end of its box; once after bodies were added. Collective.
   PetscErrorCode follow();
   /// B_s of membranes from B of their bodies, MembraneMechanics::start().
   PetscErrorCode start_membranes();
-  /// Markers on the membranes that have none and want some; they keep the strain that they have.
+  /// Sets markers on the membranes that need them and have none; their strain is kept.
   PetscErrorCode place_markers();
   struct Step {
     double time;  ///< of the velocity
@@ -75,18 +80,22 @@ public:
   /// Moves all bodies over dt with a velocity on the grid's faces, of the middle of the step, and finds their forces.
   /// `unresolved`: of all ranks, MembraneMechanics::move(). Collective.
   PetscErrorCode advance(const Step &step, const Field &velocity, long *unresolved);
-  /// Adds so many times the force per mass to fields of the grid. Collective.
+  /// Adds the force per mass, times a factor, to fields of the grid. Collective.
   PetscErrorCode add_forces(const std::vector<WeightedTarget> &targets);
   /// The mean over the domain of the force per mass, of bending and surface tension where it would drive all of the
   /// fluid: that of the discretisation alone.
   const Real3 &mean_force() const noexcept { return mean_force_; }
   /// Sets `rows`, one value for each row of this rank's cells, where add_forces() may add anything.
   void mark_rows(std::vector<char> *rows) const { exchange_.mark_rows(rows); }
-  /// Mends B where the grid does not resolve it (solids/unresolved.hpp). `trace`: the largest tr B of every species;
+  /// Resets B where the grid does not resolve it (solids/unresolved.hpp). `trace`: the largest tr B of every species;
   /// `count`: centres of all ranks. Collective.
-  PetscErrorCode forget_unresolved(const std::vector<double> &trace, long *count);
+  PetscErrorCode reset_unresolved(const std::vector<double> &trace, long *count);
 
   const std::vector<Body> &bodies() const noexcept { return bodies_; }
+  /// Of the body at a place in bodies().
+  std::vector<Receptor> &receptors(std::size_t body) { return bodies_[body].receptors; }
+  /// How often bodies have come, have gone or have got other boxes: the same on all ranks.
+  long fits() const noexcept { return fits_; }
   /// Adds energy and power of the surfaces that look() has seen; `samples`: of each membrane. `species`: phases with
   /// their materials. Collective.
   PetscErrorCode measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
@@ -119,7 +128,7 @@ public:
   }
 
 private:
-  /// What a thread needs to work on a body.
+  /// Work space of one thread for a body.
   struct Tools {
     InterfaceTransport interface;
     SolidTransport solids;
@@ -177,6 +186,7 @@ private:
   };
   std::vector<Seen> seen_;
   bool fitted_ = false;  ///< the boxes are those that the exchange knows
+  long fits_ = 0;
 };
 
 /// work(place) for all bodies of this rank: where there are as many as threads, each of them all on one thread.

@@ -49,7 +49,7 @@ struct StretchForce {
 /// where I and II are the invariants of B (Sugiyama et al., J. Comput. Phys. 230, 2011); neo-Hookean: c1 = G/2 alone.
 struct Material {
   double shear_modulus = 0;  ///< G of the undeformed solid, a pressure
-  bool attached = false;     ///< anchored to a wall or boundary, hardly moving (slab, tube)
+  bool anchored = false;     ///< anchored to a wall or boundary, hardly moving (slab, tube)
   Law law = Law::neo_hookean;
   double c1 = 0, c2 = 0, c3 = 0;  ///< pressures; not used by neo-Hookean
   double viscosity = 0;           ///< dynamic; 0: that of the fluid

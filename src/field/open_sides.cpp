@@ -88,8 +88,9 @@ bool volume_crosses(const BoxSides &sides) {
   return false;
 }
 
-bool has_feeders(const BoxSides &sides) {
-  return std::any_of(sides.begin(), sides.end(), [](const auto &pair) { return pair[0].feeder || pair[1].feeder; });
+bool has_inlet_generators(const BoxSides &sides) {
+  return std::any_of(sides.begin(), sides.end(),
+                     [](const auto &pair) { return pair[0].generator_cells || pair[1].generator_cells; });
 }
 
 bool opens(const BoxSides &sides) {

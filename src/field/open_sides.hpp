@@ -30,8 +30,8 @@ void clear_open_ghosts(const Box &box, View field, int width);
 bool volume_crosses(const BoxSides &sides);
 /// Whether the pressure is given on any boundary.
 bool opens(const BoxSides &sides);
-/// Whether any boundary has an inlet generator (openings/feeders.hpp).
-bool has_feeders(const BoxSides &sides);
+/// Whether any boundary has an inlet generator (openings/inlet_generators.hpp).
+bool has_inlet_generators(const BoxSides &sides);
 
 /// Returns the largest difference of given pressures along each direction, divided by length and density: the force per
 /// mass on a fluid at rest.

@@ -53,7 +53,7 @@ struct Side {
   WallMotion motion;                           ///< velocity of a wall
   TimeCourse given;                            ///< inflow: factor of the profile; pressure: the pressure
   std::shared_ptr<const SideProfile> profile;  ///< profile of an inflow boundary
-  int feeder = 0;  ///< length in cells of the inlet generator beside an inflow boundary; 0: none
+  int generator_cells = 0;  ///< length in cells of the inlet generator beside an inflow boundary; 0: none
   std::shared_ptr<const FedVelocity> fed;  ///< last velocity of the inlet generator, which replaces given times profile
   OutletLoad load;                         ///< load behind a pressure boundary
 };

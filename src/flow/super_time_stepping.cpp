@@ -75,19 +75,6 @@ EULASTIC_INLINE void stage_row(const Pass &pass, int s, int a, const Segment &ro
     kernels::rkl_stage<false>(row, pass.stage[s], w, m, m, force, out);
 }
 
-// Returns boundary conditions whose velocities are the changes of the given ones between two times.
-BoxSides sides_of_increment(const BoxSides &box_sides, double from, double to) {
-  BoxSides sides = box_sides;
-  for (std::size_t d = 0; d < 3; ++d)
-    for (std::size_t side = 0; side < 2; ++side) {
-      const Real3 u = box_sides[d][side].motion.at(from), v = box_sides[d][side].motion.at(to);
-      sides[d][side].motion = {{v[0] - u[0], v[1] - u[1], v[2] - u[2]}, 0, 0};
-      sides[d][side].given = {box_sides[d][side].given.at(to) - box_sides[d][side].given.at(from), 0, 0, {}};
-      sides[d][side].fed.reset();
-    }
-  return sides;
-}
-
 // Below are the viscous terms of the stages. If components are coupled (`couples`), a stage has a pass of its own,
 // which processes all components together. prepare() is called before each pass, surround() before each row of a stage.
 
@@ -404,6 +391,18 @@ std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases
     stressed.push_back(std::any_of(phases.begin(), phases.end(), stresses));
   }
   return stressed;
+}
+
+BoxSides sides_of_increment(const BoxSides &box_sides, double from, double to) {
+  BoxSides sides = box_sides;
+  for (std::size_t d = 0; d < 3; ++d)
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Real3 u = box_sides[d][side].motion.at(from), v = box_sides[d][side].motion.at(to);
+      sides[d][side].motion = {{v[0] - u[0], v[1] - u[1], v[2] - u[2]}, 0, 0};
+      sides[d][side].given = {box_sides[d][side].given.at(to) - box_sides[d][side].given.at(from), 0, 0, {}};
+      sides[d][side].fed.reset();
+    }
+  return sides;
 }
 
 int rkl_stages(double dt, double dt_explicit) {

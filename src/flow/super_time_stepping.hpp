@@ -18,6 +18,9 @@ struct RigidMeans;
 /// dt <= dt_explicit (s^2 + s - 2)/4. (An even s would leave the stiffest mode undamped.)
 int rkl_stages(double dt, double dt_explicit);
 
+/// Returns boundary conditions whose velocities are the changes of the given ones between two times.
+BoxSides sides_of_increment(const BoxSides &sides, double from, double to);
+
 /// Returns for every row of owned cells whether any phase exerts a force there.
 std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases);
 

@@ -49,7 +49,7 @@ bool write_bodies(hid_t file, const BodySpecies &bodies) {
          write_text_attribute(id.get(), "checksum", checksum_text(checksum(ids.data(), ids.size(), 0)));
 }
 
-// Empty, or what was wrong: then nothing is left of the copy.
+// Returns an error text, or nothing; after an error the copy is removed.
 std::string copy_file(const std::string &path, const std::string &target) {
   std::error_code error, ignored;
   std::filesystem::copy_file(path, target, std::filesystem::copy_options::overwrite_existing, error);
@@ -60,9 +60,9 @@ std::string copy_file(const std::string &path, const std::string &target) {
 
 }  // namespace
 
-BodiesFile::BodiesFile(MPI_Comm comm, std::string path, bool membranes, bool loads)
-    : comm_(comm), path_(std::move(path)), membranes_(membranes), loads_(loads) {
-  for_numbers({}, membranes, loads, [&](const char *name, const auto &value) {
+BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &columns)
+    : comm_(comm), path_(std::move(path)), has_(columns) {
+  for_numbers({}, has_.membranes, has_.loads, has_.bonds, [&](const char *name, const auto &value) {
     columns_.push_back({name, static_cast<int>(sizeof value / sizeof(double)), 0});
   });
   for (const Column &column : columns_) width_ += column.width;
@@ -83,7 +83,7 @@ PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::v
   if (known_.bodies == 0) PetscFunctionReturn(0);
   times_.push_back(time);
   for (const BodyRecord &body : owned)
-    for_numbers(body, membranes_, loads_, [&](const char *, const auto &value) {
+    for_numbers(body, has_.membranes, has_.loads, has_.bonds, [&](const char *, const auto &value) {
       const auto *first = reinterpret_cast<const double *>(&value);
       waiting_.insert(waiting_.end(), first, first + sizeof value / sizeof(double));
     });
@@ -128,7 +128,7 @@ PetscErrorCode BodiesFile::resume(long *rows) {
 
 PetscErrorCode BodiesFile::flush() { return write_waiting(); }
 
-// What waits of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
+// Buffered rows of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
 PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *values) const {
   PetscFunctionBeginUser;
   const std::size_t rows = times_.size();

@@ -25,11 +25,16 @@ struct BodySpecies {
   std::function<const std::string &(int label)> name;
 };
 
+/// What the file has beside the columns of all bodies.
+struct BodiesColumns {
+  bool membranes = false;  ///< what is known of those alone
+  bool loads = false;      ///< force and torque, where there are bodies that bear loads
+  bool bonds = false;      ///< of adhesion
+};
+
 class BodiesFile {
 public:
-  /// `membranes`: with what is known of those alone; `loads`: with force and torque, where there are bodies that bear
-  /// loads.
-  BodiesFile(MPI_Comm comm, std::string path, bool membranes = false, bool loads = false);
+  BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &columns = {});
 
   /// Collective. One row; every rank has records of the bodies that it owns (BodyRange), always the same in the same
   /// order; others may follow: in earlier rows those have the volume 0 and no other number. No bodies, no file.
@@ -59,7 +64,7 @@ private:
   BodySpecies known_;  ///< who the bodies are
   std::vector<Column> columns_;
   int width_ = 0;  ///< values of a body in a row
-  bool membranes_, loads_;
+  BodiesColumns has_;
   static constexpr std::size_t unknown = ~std::size_t(0);
   std::vector<double> times_, waiting_;  ///< rows that wait: (rows), (rows, owned bodies, width_)
   std::uint64_t time_checksum_ = 0;

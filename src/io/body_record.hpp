@@ -19,15 +19,17 @@ struct BodyRecord {
   double largest_stretch = 0;   ///< largest principal stretch anywhere in it, from tr B
   double rest_deformation = 0;  ///< taylor_deformation of what is left when the mean of B is undone
   Real3 force{}, torque{};      ///< of the fluid on a body that bears loads; 0 of others
+  double bonds = 0, bond_tension = 0, bond_age = 0;  ///< of adhesion: number, means
+  Real3 bond_force{};                                ///< of all of them, on the body
   /// Of membranes: area (2-D: length) of the surface, energies, angular velocity at which it goes round in the xy
   /// plane.
   double surface_area = 0, shear_energy = 0, area_energy = 0, bending_energy = 0, turning_rate = 0;
 };
 
-/// visit(name, value) of all numbers of a record, the value a double or a Real3; those that only membranes have, and
-/// the loads, on request.
+/// Calls visit(name, value) for all numbers of a record, the value a double or a Real3; on request also for those of
+/// membranes, loads and bonds.
 template <class Visit>
-void for_numbers(const BodyRecord &body, bool membranes, bool loads, const Visit &visit) {
+void for_numbers(const BodyRecord &body, bool membranes, bool loads, bool bonds, const Visit &visit) {
   visit("centroid", body.centroid);
   visit("velocity", body.velocity);
   visit("volume", body.volume);
@@ -43,9 +45,15 @@ void for_numbers(const BodyRecord &body, bool membranes, bool loads, const Visit
     visit("bending_energy", body.bending_energy);
     visit("turning_rate", body.turning_rate);
   }
-  if (!loads) return;
-  visit("force", body.force);
-  visit("torque", body.torque);
+  if (loads) {
+    visit("force", body.force);
+    visit("torque", body.torque);
+  }
+  if (!bonds) return;
+  visit("bonds", body.bonds);
+  visit("bond_force", body.bond_force);
+  visit("bond_tension", body.bond_tension);
+  visit("bond_age", body.bond_age);
 }
 
 }  // namespace eulastic

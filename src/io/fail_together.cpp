@@ -11,13 +11,13 @@ namespace {
 
 constexpr double patience = 10;  // seconds that a rank that has failed waits for the others
 
-// Seconds of a Deadline: far more than any file system needs. In parts: a process that is stopped for an hour, by a
+// Seconds of a Deadline: far more than any file system takes. In parts: a process that is stopped for an hour, by a
 // batch system or a lid that is closed, finds one part gone when it goes on.
 constexpr unsigned longest_call = 300, part = 5;
 std::string line;
 volatile std::sig_atomic_t parts = 0;
 
-// Ends the job if the others do not come: they wait, inside HDF5 or MPI-IO, for the rank that has failed alone.
+// Ends the job if the other ranks do not arrive: they wait inside HDF5 or MPI-IO for the rank that has failed alone.
 PetscErrorCode wait_for_others(MPI_Comm comm, MPI_Request *request, int rank, const std::string &problem) {
   int there = 0;
   PetscFunctionBeginUser;

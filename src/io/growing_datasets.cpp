@@ -13,8 +13,8 @@ namespace {
 
 constexpr hsize_t chunk_bodies = 1 << 13;
 
-// The value in rows from before the body came in.
-double before_it_came(const std::string &column) { return column == "volume" ? 0 : std::nan(""); }
+// The value in rows before the body entered.
+double value_before_entry(const std::string &column) { return column == "volume" ? 0 : std::nan(""); }
 
 // Of the rows from `begin` on.
 bool checksum_of_rows(hid_t dataset, const std::vector<hsize_t> &shape, hsize_t begin, std::uint64_t *sum) {
@@ -59,7 +59,7 @@ bool set_rows(hid_t file, const char *name, const RowsPart &whole) {
   const Hdf5Space space(H5Screate_simple(whole.rank(), total, limit));
   const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
   (void)H5Pset_chunk(creation.get(), whole.rank(), chunk);
-  const double before = before_it_came(name);
+  const double before = value_before_entry(name);
   (void)H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &before);
   Hdf5Dataset dataset(H5Dcreate2(file, name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
   return dataset.close();

@@ -7,7 +7,7 @@
 namespace eulastic {
 namespace {
 
-constexpr double best_compression = 2000;  // beyond deflate's 1032: such a header lies
+constexpr double best_compression = 2000;  // beyond deflate's 1032: such a header is invalid
 
 class Hdf5Volume : public VolumeFile {
 public:

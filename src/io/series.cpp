@@ -68,17 +68,26 @@ PetscErrorCode Series::open(MPI_Comm comm, const std::string &path, const std::v
 }
 
 PetscErrorCode Series::write(const std::vector<double> &values) {
-  std::string problem;
   PetscFunctionBeginUser;
-  if (file_) {
-    PetscCheck(values.size() == columns_, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "%s: %zu values for %zu columns",
-               path_.c_str(), values.size(), columns_);
+  PetscCall(write_rows({values}));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Series::write_rows(const std::vector<std::vector<double>> &rows) {
+  std::string problem, lines;
+  long count = static_cast<long>(rows.size());
+  PetscFunctionBeginUser;
+  for (std::size_t r = 0; r < rows.size() && file_; ++r) {
+    PetscCheck(rows[r].size() == columns_, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ, "%s: %zu values for %zu columns",
+               path_.c_str(), rows[r].size(), columns_);
     std::string line;
-    for (const double value : values) line += (line.empty() ? "" : ",") + format_double(value);
-    problem = append(line + "\n");
+    for (const double value : rows[r]) line += (line.empty() ? "" : ",") + format_double(value);
+    lines += line + "\n";
   }
+  if (!lines.empty()) problem = append(lines);
   PetscCall(fail_together(comm_, problem));
-  ++rows_;
+  PetscCallMPI(MPI_Bcast(&count, 1, MPI_LONG, 0, comm_));
+  rows_ += count;
   PetscFunctionReturn(0);
 }
 

@@ -20,6 +20,8 @@ public:
                       long rows_kept = std::numeric_limits<long>::max());
   /// Collective. One value per column, rank 0's count; 17 digits, and in the file when this returns.
   PetscErrorCode write(const std::vector<double> &values);
+  /// Collective. The same of the rows that rank 0 has.
+  PetscErrorCode write_rows(const std::vector<std::vector<double>> &rows);
   /// Collective. All rows survive a power cut when this returns.
   PetscErrorCode sync();
   /// Rank 0 has renamed the file.

@@ -80,8 +80,8 @@ std::string wall_index(const Box &box, const std::vector<SnapshotEntry> &entries
   return index_head("walls") + text + index_tail;
 }
 
-// Whether tools for pictures get this field, as one of cells: one that is staggered is drawn half a cell too high, and
-// the staggered velocity is left to `velocity`.
+// Whether visualisation tools get this field as cell data: staggered fields would be drawn half a cell too high, and
+// `velocity` replaces the staggered velocity.
 bool is_drawn(const FieldFormat &format) {
   const Staggering &s = format.staggering;
   return s[0] + s[1] + s[2] != 1 && format.plane < 0;

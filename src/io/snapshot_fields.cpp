@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char *axes = "xyz";
 
-// A centred field where component (a, b) of the tensor of a phase lives.
+// A centred field averaged to the positions of component (a, b) of the tensor of a phase.
 double at_component(ConstView q, const TensorComponent &c, int i, int j, int k) {
   const double *p = &q.row(j, k)[i];
   if (!c.on_edge()) return p[0];
@@ -50,7 +50,7 @@ void SnapshotFields::mix_labels(const std::vector<Phase> &phases) {
   });
 }
 
-// I + sum of phi (B - I) over the phases that are not membranes, phi averaged to where the component lives.
+// I + sum of phi (B - I) over the phases that are not membranes, phi averaged to the positions of the component.
 void SnapshotFields::mix_tensors(const std::vector<Phase> &phases) {
   if (!tensor_.field) tensor_.field = Field(*box_, phases[0].tensor.field.count());
   for (int c = 0; c < tensor_.field.count(); ++c) {

@@ -11,7 +11,7 @@ namespace {
 Json body_json(const BodyRecord &b) {
   Json json;
   json.add("id", b.id).add("species", b.species);
-  for_numbers(b, true, true, [&](const char *name, const auto &value) { json.add(name, value); });
+  for_numbers(b, true, true, false, [&](const char *name, const auto &value) { json.add(name, value); });
   return json;
 }
 

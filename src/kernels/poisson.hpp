@@ -10,15 +10,15 @@
 namespace eulastic::kernels {
 
 /// Couplings of the cells of one row to their neighbours, 1/(width x distance of centres); 0 at a wall, so that no
-/// ghost is needed there. Along x there is one number per cell.
+/// ghost is needed there. Along x there is one number per cell. The operator is lap - shift.
 struct LineCoefficients {
   const double *x_low, *x_high;
-  double y_low, y_high, z_low, z_high;
+  double y_low, y_high, z_low, z_high, shift;
 };
 
 inline constexpr double line_laplacian_flops_per_direction = 6;
 
-/// Returns the sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]) at cell i of the row q.
+/// Returns the sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]), less shift q[0], at cell i of the row q.
 template <int Dim>
 EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy, std::ptrdiff_t sz,
                                       const LineCoefficients &c) noexcept {
@@ -31,7 +31,7 @@ EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy,
     sum = fma(c.z_low, q[i - sz] - centre, sum);
     sum = fma(c.z_high, q[i + sz] - centre, sum);
   }
-  return sum;
+  return fma(-c.shift, centre, sum);
 }
 
 /// Adds sum += weight (r - factor lap r) for `Rows` rows from s on: the residual of the right-hand side r after one

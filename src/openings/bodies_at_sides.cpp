@@ -10,7 +10,7 @@ namespace eulastic {
 namespace {
 
 // What stays where it is, or cannot be followed.
-bool is_held(const Phase &phase) { return !phase.label || phase.material.attached || phase.material.is_rigid(); }
+bool is_held(const Phase &phase) { return !phase.label || phase.material.anchored || phase.material.is_rigid(); }
 
 }  // namespace
 
@@ -48,10 +48,10 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 4, MPI_INT, MPI_MAX, flow_.domain.comm()));
   const int held = found[0];
   if (held >= 0)
-    flow_.crowded = "-species " + flow_.now.phases[held / 6].species + ": a body is within " +
-                    std::to_string(free_layers) + " cells of the open boundary " +
-                    side_name(held % 6 / 2, held % 2 != 0) +
-                    "; accepted: bodies that stay further inside, or a longer box";
+    flow_.stop_reason = "-species " + flow_.now.phases[held / 6].species + ": a body is within " +
+                        std::to_string(free_layers) + " cells of the open boundary " +
+                        side_name(held % 6 / 2, held % 2 != 0) +
+                        "; accepted: bodies that stay further inside, or a longer box";
   if (held < 0 && found[3] > 0) PetscCall(take_out_boxed(leaving));
   if (held < 0 && found[1] > 0) PetscCall(take_out_bodies(true));
   if (held < 0 && found[2] > 0 && flow_.now.travel_since_labels == 0)
@@ -167,7 +167,7 @@ PetscErrorCode BodiesAtSides::find_coming(const std::vector<int> &labels, std::v
     const std::size_t n = found - labels.begin();
     const Box here = body.phase->block(*body.box, 0, 0);
     Int3 begin = here.layout().begin;
-    for (int d = 0; d < 3; ++d) begin[d] += feeders_->shift_of(body.number)[d];
+    for (int d = 0; d < 3; ++d) begin[d] += generators_->shift_of(body.number)[d];
     const Box block(flow_.domain.domain_shape(), begin, here.cells(), 0);
     (*states)[n] = Coming::waits;
     if (lies_in_domain(block)) candidates.push_back({n, body, block});
@@ -205,43 +205,43 @@ PetscErrorCode BodiesAtSides::feed_boxed(const std::vector<int> &labels) {
   for (std::size_t n = 0; n < labels.size(); ++n) {
     if (states[n] == Coming::waits) continue;
     if (states[n] == Coming::comes_in) {
-      shifts[labels[n]] = feeders_->shift_of(labels[n]);
+      shifts[labels[n]] = generators_->shift_of(labels[n]);
       PetscCall(flow_.bodies.add_like(flow_.domain, labels[n], shifts[labels[n]]));
-      feeders_->come_in(labels[n], flow_.bodies.bodies());
+      generators_->come_in(labels[n], flow_.bodies.bodies());
       if (own[n] == Coming::comes_in) copies.emplace_back(labels[n], flow_.bodies.bodies());
     }
-    feeders_->forget(labels[n]);
+    generators_->forget(labels[n]);
   }
   PetscCall(boxed_.add_copies(copies, shifts));
   if (!shifts.empty()) PetscCall(boxed_.refit());
   PetscFunctionReturn(0);
 }
 
-// A body that has left its feeder comes in behind; where others fill its place it waits.
+// A body that has left its inlet generator comes in behind; where others fill its place it waits.
 PetscErrorCode BodiesAtSides::follow() {
   std::vector<int> all, passed, boxed;
   std::vector<BodyCopy> copies;
   PetscFunctionBeginUser;
-  if (!feeders_) PetscFunctionReturn(0);
-  PetscCall(feeders_->find_passed(&all));
+  if (!generators_) PetscFunctionReturn(0);
+  PetscCall(generators_->find_passed(&all));
   for (const int label : all) (flow_.now.phases[flow_.bodies.species(label)].boxed ? boxed : passed).push_back(label);
   if (!boxed.empty()) PetscCall(feed_boxed(boxed));
   if (passed.empty()) PetscFunctionReturn(0);
   PetscCall(copy_bodies(flow_.domain, flow_.exchange, passed, &flow_.now.phases, &copies));
   for (const BodyCopy &copy : copies) {
     if (copy.phase < 0) {  // it has left
-      feeders_->forget(copy.label);
+      generators_->forget(copy.label);
       continue;
     }
-    const Int3 shift = feeders_->shift_of(copy.label);
+    const Int3 shift = generators_->shift_of(copy.label);
     Field fractions;
     double fullest = 0;
     PetscCall(sum_fractions(&fractions));
     PetscCall(find_fullest(flow_.domain, copy, shift, fractions[0], &fullest));
     if (fullest > full) continue;
     PetscCall(flow_.bodies.add_like(flow_.domain, copy.label, shift));
-    feeders_->come_in(copy.label, flow_.bodies.bodies());
-    feeders_->forget(copy.label);
+    generators_->come_in(copy.label, flow_.bodies.bodies());
+    generators_->forget(copy.label);
     Phase &phase = flow_.now.phases[copy.phase];
     put_body(flow_.domain, copy, shift, flow_.bodies.bodies(), &phase);
     PetscCall(flow_.settle(&phase));

@@ -1,9 +1,9 @@
-// Bodies where volume crosses sides of the box: they flow out, or are taken out whole, and come in from feeders
+// Bodies where volume crosses sides of the box: they flow out, or are taken out whole, and come in from generators
 // (docs/method.md, section 20).
 #pragma once
 
 #include "boxes/boxed_bodies.hpp"
-#include "openings/feeders.hpp"
+#include "openings/inlet_generators.hpp"
 #include "parts/flow.hpp"
 #include "parts/flow_part.hpp"
 
@@ -11,15 +11,16 @@ namespace eulastic {
 
 class BodiesAtSides final : public FlowPart {
 public:
-  /// `feeders`: null where no side has one.
-  BodiesAtSides(Flow *flow, BoxedBodies *boxed, Feeders *feeders) : flow_(*flow), boxed_(*boxed), feeders_(feeders) {}
+  /// `generators`: null without inlet generators.
+  BodiesAtSides(Flow *flow, BoxedBodies *boxed, InletGenerators *generators)
+      : flow_(*flow), boxed_(*boxed), generators_(generators) {}
 
   PetscErrorCode start() override { return check_sides(true); }
   PetscErrorCode end_step() override { return check_sides(false); }
   PetscErrorCode follow() override;
 
 private:
-  /// What becomes of a body that has left its feeder, as far as a rank knows: all others say has_left.
+  /// What becomes of a body that has left its inlet generator, as far as a rank knows: all others say has_left.
   enum class Coming : int { has_left, waits, comes_in };
   PetscErrorCode check_sides(bool start);
   PetscErrorCode take_out_bodies(bool whole);
@@ -30,7 +31,7 @@ private:
 
   Flow &flow_;
   BoxedBodies &boxed_;
-  Feeders *feeders_;
+  InletGenerators *generators_;
 };
 
 }  // namespace eulastic

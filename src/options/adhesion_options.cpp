@@ -3,29 +3,34 @@
 namespace eulastic {
 namespace {
 
-void add_region(Rows &rows, AdhesionPair &pair) {
+void add_region(Rows &rows, AdhesiveRegion &area) {
   Option &region = rows.add(
       "region", "length",
       "the box, by its low and high corner, in which a wall or the surface of a rigid or anchored species is adhesive");
   region.accepted = several(6, "number", any_number);
   region.default_note = "everywhere";
-  region.read = [&pair](const std::string &value) {
+  region.read = [&area](const std::string &value) {
     double corners[6];
     std::string wrong = read_reals(value, any_number, corners, 6);
     for (int d = 0; d < 3 && wrong.empty(); ++d) {
-      pair.low[d] = corners[d];
-      pair.high[d] = corners[3 + d];
-      if (!(pair.low[d] <= pair.high[d])) wrong = "the low corner must be below the high one";
+      area.low[d] = corners[d];
+      area.high[d] = corners[3 + d];
+      if (!(area.low[d] <= area.high[d])) wrong = "the low corner must be below the high one";
     }
     return wrong;
   };
-  region.text = [&pair] {
-    if (pair.low[0] == -HUGE_VAL) return std::string();
+  region.text = [&area] {
+    if (area.low[0] == -HUGE_VAL) return std::string();
     Names items;
-    for (const Real3 *corner : {&pair.low, &pair.high})
+    for (const Real3 *corner : {&area.low, &area.high})
       for (const double place : *corner) items.push_back(to_text(place));
     return join(items, ",");
   };
+  Option &file = rows.path("region_file", area.file.path,
+                           "file of the cells in which a wall or surface is adhesive (HDF5, NRRD, STL): those that it "
+                           "fills at least in part; with -..._region: in both");
+  file.accepted = "a path, of HDF5 also FILE:DATASET";
+  file.names_file = any_file;
 }
 
 }  // namespace
@@ -95,7 +100,7 @@ void add_adhesion(Rows &rows, Config &config) {
               "the tension F multiplies that rate by exp(-F c)");
     rows.real("thermal_energy", law.thermal_energy, not_negative, "energy",
               "kT: stretched bonds form at a lower rate, in detailed balance; 0: one rate everywhere within reach");
-    add_region(rows, pair);
+    add_region(rows, pair.region);
     rows.prefix.clear();
   }
 }

@@ -68,7 +68,7 @@ public:
     profile.accepted = "uniform, developed, or a path, of HDF5 also FILE:DATASET";
     profile.names_file = [](const std::string &value) { return value != "uniform" && value != "developed"; };
     rows_.real(
-        "generator_length", spec_.feeder, not_negative, "length",
+        "generator_length", spec_.generator_length, not_negative, "length",
         "length of the inlet generator beside the boundary: bodies and flow that pass its end also enter through the "
         "boundary");
     rows_.zero_is("off");

@@ -1,17 +1,16 @@
-// The manual: -help, docs/options.md, the page for man, and -version.
+// Texts of -help, docs/options.md, the manual page and -version.
 #pragma once
 
 #include <string>
 
 namespace eulastic {
 
-/// All options, or those whose name, text, default or accepted values have `word`, in any case, those of the sides of
-/// the box once for all; PETSc's options with it; and why it is not supported, if it is not. Nothing if there is none
-/// of these.
+/// All options, or those whose name, text, default or accepted values contain `word`, ignoring case, with one entry for
+/// all boundaries; PETSc's options with it; and the reason if it is not supported. Empty if nothing matches.
 std::string help_text(const std::string &word = {});
-/// A few lines: how to start it, and where to read on.
+/// A short usage text.
 std::string usage_text();
-/// docs/options.md, whole.
+/// The text of docs/options.md.
 std::string help_markdown();
 /// The page for man(1), in troff with the macros of man(7).
 std::string man_page();

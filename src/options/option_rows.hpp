@@ -1,5 +1,5 @@
-// Makes rows of the option table out of members of a Config: the type of the member gives kind, arity and how it
-// is read and written.
+// Makes rows of the option table from members of a Config: the type of the member determines kind, number of values,
+// parsing and printing.
 #pragma once
 
 #include "io/option_values.hpp"
@@ -28,6 +28,7 @@ std::string list(const T *values, std::size_t count, const Text &text) {
   return join(items, ",");
 }
 
+// Makes rows from members.
 class Rows {
 public:
   std::vector<Option> rows;
@@ -111,7 +112,7 @@ public:
     return row;
   }
 
-  /// Row r, or the last one, also accepts `word` for 0, and shows it.
+  /// Row r, or the last one, also accepts `word` for 0, and prints it.
   void zero_is(const std::string &word, std::size_t r) {
     Option &row = rows[r];
     const std::size_t range = row.accepted.find(" >= 0");
@@ -122,20 +123,19 @@ public:
   }
   void zero_is(const std::string &word) { zero_is(word, rows.size() - 1); }
 
-  /// The rows from `first` on may differ between a checkpoint and the run that goes on from it.
+  /// The rows from `first` on may differ between a checkpoint and the run that continues from it.
   void allow_change(std::size_t first) {
     for (std::size_t r = first; r < rows.size(); ++r) rows[r].may_change = true;
   }
 
-  /// The rows from `first` on mean something only while `applies` holds, which `only_with` says.
+  /// The rows from `first` on apply only while `applies` holds, which `only_with` says.
   void limit(std::size_t first, const std::string &only_with, const std::function<bool()> &applies) {
     for (std::size_t r = first; r < rows.size(); ++r) {
       rows[r].only_with = only_with;
       rows[r].applies = applies;
     }
   }
-  /// The rows from `first` on mean something only while `target` has one of the `wanted` values. `names` are those
-  /// of `-option`.
+  /// The rows from `first` on apply only while `target` has one of the `wanted` values. `names`: values of `-option`.
   template <class T>
   void restrict(std::size_t first, const std::string &option, T &target, const Names &names, std::vector<T> wanted) {
     Names text;

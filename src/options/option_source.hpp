@@ -1,4 +1,4 @@
-// Words of the command line, of options files or of PETSC_OPTIONS as option entries, not yet understood.
+// Splits the command line, options files and PETSC_OPTIONS into entries of a name and a value.
 #pragma once
 
 #include <string>
@@ -13,16 +13,17 @@ struct Entry {
   std::string options_file;  ///< it is in; empty = none
 };
 
-/// Entries of one file, of the environment or of the command line; a later source wins over an earlier one.
+/// Entries of one file, of the environment or of the command line; a later source overrides an earlier one.
 using Source = std::vector<Entry>;
 
-/// All return what is wrong, or nothing.
+/// All return an error text, or nothing.
 /// `options_file`: set to the one positional word; null where there must be none.
 std::string read_words_as_entries(const std::vector<std::string> &words, const std::string &where,
                                   std::vector<Entry> *entries, std::string *options_file);
-/// Appends one source for each file, those that -options_file brings in before the file they stand in.
+/// Appends one source for each file; files that -options_file includes come before the including file.
 std::string read_options_file(const std::string &path, std::vector<Source> *sources);
-/// The file (or FILE:DATASET) an entry names: as it is, or if it is not there, beside the options file.
+/// The file (or FILE:DATASET) that an entry names: the path itself, or if it does not exist, the path relative to the
+/// options file.
 std::string find_input(const Entry &entry);
 /// Words of a line: separated by white space, "..." holds a word together and within it \" is a quote and \\ a
 /// backslash, # before a word starts a comment.

@@ -1,4 +1,4 @@
-// From the command line to a validated Config, without PETSc: all ranks together, with the same answer.
+// Parses the command line into a validated Config, without PETSc. Collective; all ranks get the same result.
 #pragma once
 
 #include "scene/config.hpp"
@@ -20,7 +20,7 @@ struct ParseResult {
   std::vector<InputFile> inputs;      ///< files that options name, of a config without error
   std::vector<std::string> warnings;  ///< one line each, without "eulastic: warning: "
   std::string message;                ///< -help, -version: print to stdout and exit 0
-  bool alone = false;                 ///< nothing was asked for: the message is the usage, the exit code 2
+  bool alone = false;                 ///< no arguments were given: the message is the usage, the exit code 2
   std::string program = "eulastic";   ///< as it was started
   /// For PetscInitialize, program name excluded: PETSc's own options of all sources, behind -skip_petscrc.
   /// PETSC_OPTIONS is in it: unset that variable before PetscInitialize.
@@ -29,14 +29,14 @@ struct ParseResult {
 };
 
 /// `arguments`: the command line without the program name: options and at most one options file. An options file
-/// has lines `-name value`, # starts a comment. The command line wins over `petsc_options` (the environment
-/// variable), which wins over the file. Rank 0 reads the files that they name; nothing is written.
+/// has lines `-name value`, # starts a comment. The command line overrides `petsc_options` (the environment variable),
+/// which overrides the file. Rank 0 reads the files that they name; nothing is written.
 ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options = {});
 
 /// Every option as resolved; itself an options file that gives the same run.
 std::string options_text(const ParseResult &result);
 
-/// Begins the line of options.txt, below that of the option, that has the content of its file.
+/// Begins the line of options.txt, below that of the option, with the hash of its file.
 inline const std::string content_mark = "# content ";
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// The options that belong to PETSc and pass through to it unread.
+// Options that are passed to PETSc unread.
 #pragma once
 
 #include <petscsystypes.h>
@@ -17,15 +17,15 @@ const std::vector<std::string> &petsc_option_names();
 /// Whether it belongs to the KSP of -pressure_solver ksp.
 bool is_pressure_ksp_option(const std::string &name);
 
-/// What is wrong with the value of that option, in one line, or nothing. A file that PETSc would write must not exist,
-/// nor have the name of a file of the run in `output_directory`.
+/// Returns an error of one line about the value of that option, or nothing. A file that PETSc would write must not
+/// exist, nor have the name of a file of the run in `output_directory`.
 std::string check_petsc_value(const std::string &name, const std::string &value, const std::string &output_directory);
 
 using PetscOptionValues = std::map<std::string, std::string>;
 /// Those among `petsc_arguments`, without dashes; the last of equal names wins, as in PETSc.
 PetscOptionValues petsc_option_values(const std::vector<std::string> &petsc_arguments);
 /// Collective; after everything has been set up. `refusal`: one line about an option that no rank's PETSc has read.
-/// What shows things is exempt: PETSc reads that when it solves, or at the end.
+/// Options that only print are exempt: PETSc reads them during the solution or at the end.
 PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string *refusal);
 
 }  // namespace eulastic

@@ -31,12 +31,12 @@ void add_anchored_row(Rows &rows, SpeciesSpec &spec) {
       "second order at rest");
   row.default_note = "true for slab and tubes, else false";
   row.read = [&spec](const std::string &value) {
-    bool attached = false;
-    std::string wrong = read_boolean(value, &attached);
-    if (wrong.empty()) spec.attached = attached;
+    bool anchored = false;
+    std::string wrong = read_boolean(value, &anchored);
+    if (wrong.empty()) spec.anchored = anchored;
     return wrong;
   };
-  row.text = [&spec] { return spec.attached.value_or(is_attached(spec.shape)) ? "true" : "false"; };
+  row.text = [&spec] { return spec.anchored.value_or(is_anchored(spec.shape)) ? "true" : "false"; };
 }
 
 const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "slab",

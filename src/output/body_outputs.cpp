@@ -135,6 +135,13 @@ std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::ve
       record.force = measured.surface_loads[elastic].force;
       record.torque = measured.surface_loads[elastic].torque;
     }
+    if (b < measured.body_bonds.size() && measured.body_bonds[b].body == body.label) {
+      const BodyBonds &bonds = measured.body_bonds[b];
+      record.bonds = bonds.bonds;
+      record.bond_force = bonds.force;
+      record.bond_tension = bonds.tension;
+      record.bond_age = bonds.age;
+    }
     if (b < surfaces.size()) {
       const SurfaceMeasure &surface = surfaces[b];
       record.surface_area = surface.area;

@@ -4,9 +4,6 @@ namespace eulastic {
 
 PetscErrorCode BondFiles::open(MPI_Comm comm, const std::string &directory, const Position &position) {
   PetscFunctionBeginUser;
-  PetscCall(bodies_.open(comm, directory + "/adhesion.csv",
-                         {"time", "body", "bonds", "force_x", "force_y", "force_z", "tension", "age"},
-                         static_cast<long>(position.bodies)));
   PetscCall(
       bonds_.open(comm, directory + "/adhesion_bonds.csv",
                   {"time", "body", "partner", "from_x", "from_y", "from_z", "to_x", "to_y", "to_z", "tension", "since"},
@@ -18,34 +15,38 @@ PetscErrorCode BondFiles::open(MPI_Comm comm, const std::string &directory, cons
 }
 
 void BondFiles::moved_to(const std::string &directory) {
-  bodies_.moved_to(directory + "/adhesion.csv");
   bonds_.moved_to(directory + "/adhesion_bonds.csv");
   events_.moved_to(directory + "/adhesion_events.csv");
 }
 
-PetscErrorCode BondFiles::write_bodies(double time, Adhesion *adhesion) {
+PetscErrorCode BondFiles::write_events(Adhesion *adhesion) {
+  std::vector<BondEvent> events;
+  std::vector<std::vector<double>> rows;
   PetscFunctionBeginUser;
-  for (const BodyBonds &b : adhesion->measure())
-    PetscCall(
-        bodies_.write({time, double(b.body), double(b.bonds), b.force[0], b.force[1], b.force[2], b.tension, b.age}));
-  for (const BondEvent &e : adhesion->take_events())
-    PetscCall(
-        events_.write({e.time, double(e.formed), double(e.body), double(e.partner), double(e.pair), e.tension, e.age}));
+  PetscCall(adhesion->take_events(&events));
+  for (const BondEvent &e : events)
+    rows.push_back(
+        {e.time, double(e.formed), double(e.receptor.body), double(e.partner.body), double(e.pair), e.tension, e.age});
+  PetscCall(events_.write_rows(rows));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode BondFiles::write_bonds(double time, const Adhesion &adhesion) {
+  std::vector<BondLine> lines;
+  std::vector<std::vector<double>> rows;
   PetscFunctionBeginUser;
-  for (const Adhesion::Line &line : adhesion.lines())
-    PetscCall(bonds_.write({time, double(line.body), double(line.partner), line.from[0], line.from[1], line.from[2],
-                            line.to[0], line.to[1], line.to[2], line.tension, line.since}));
+  PetscCall(adhesion.lines(&lines));
+  for (const BondLine &line : lines)
+    rows.push_back({time, double(line.receptor.body), double(line.partner.body), line.from[0], line.from[1],
+                    line.from[2], line.to[0], line.to[1], line.to[2], line.tension, line.since});
+  PetscCall(bonds_.write_rows(rows));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode BondFiles::sync(Position *position) {
   PetscFunctionBeginUser;
-  for (Series *series : {&bodies_, &bonds_, &events_}) PetscCall(series->sync());
-  *position = {bodies_.rows(), bonds_.rows(), events_.rows()};
+  for (Series *series : {&bonds_, &events_}) PetscCall(series->sync());
+  *position = {bonds_.rows(), events_.rows()};
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,4 @@
-// What a run with adhesion leaves of its bonds: adhesion.csv, adhesion_bonds.csv, adhesion_events.csv.
+// What a run with adhesion leaves of single bonds: adhesion_bonds.csv, adhesion_events.csv.
 #pragma once
 
 #include "adhesion/adhesion.hpp"
@@ -10,19 +10,19 @@ class BondFiles {
 public:
   /// Rows in the files.
   struct Position {
-    std::int64_t bodies = 0, bonds = 0, events = 0;
+    std::int64_t bonds = 0, events = 0;
   };
-  /// Collective. In the directory of a run that goes on its files are cut back to `position`.
+  /// Collective. At a restart in the same directory its files are cut back to `position`.
   PetscErrorCode open(MPI_Comm comm, const std::string &directory, const Position &position);
   void moved_to(const std::string &directory);
-  /// Collective. A row for every body with receptors, and one for every event since the last call.
-  PetscErrorCode write_bodies(double time, Adhesion *adhesion);
+  /// Collective. A row for every event since the last call.
+  PetscErrorCode write_events(Adhesion *adhesion);
   /// Collective. A row for every bond.
   PetscErrorCode write_bonds(double time, const Adhesion &adhesion);
   PetscErrorCode sync(Position *position);
 
 private:
-  Series bodies_, bonds_, events_;
+  Series bonds_, events_;
 };
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// When a run writes checkpoints, how many stay, and when somebody wants it to end.
+// Schedules checkpoints, removes old ones, and ends the run on signals and time limits.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -10,18 +10,18 @@ namespace eulastic {
 
 class Checkpoints {
 public:
-  /// `goes_on`: from a checkpoint in `directory`.
+  /// `goes_on`: whether the run continues from a checkpoint in `directory`.
   void start(const ParseResult &parsed, const std::string &directory, Solver *solver, Outputs *outputs, Guards *guards,
              bool goes_on);
-  /// The run has been accepted; its files are in `directory`. Checkpoints younger than the one it goes on from, which
-  /// belong to a run that is no more, are removed.
+  /// The run has been accepted; its files are in `directory`. Checkpoints newer than the one it continues from belong
+  /// to a discarded run and are removed.
   void accept(const std::string &directory);
 
-  /// Collective, after a step and what it made due. Writes a checkpoint if one is due by simulated time or by rank 0's
-  /// clock, or if the run has to end: then `exit_reason` is "signal" or "wall_limit". A state that the guards do not
-  /// let pass is not written: the last good one stays.
+  /// Collective, after a step and its outputs. Writes a checkpoint if one is due by simulated time or by rank 0's
+  /// clock, or if the run has to end: then `exit_reason` is "signal" or "wall_limit". A state that the guards refuse is
+  /// not written, so that the last good checkpoint is kept.
   PetscErrorCode after_step(const RunPosition &position, std::string *exit_reason, Stop *stop);
-  /// Collective. The last one of a run that writes any.
+  /// Collective. Writes the last checkpoint of a run, if it writes any.
   PetscErrorCode before_end(const RunPosition &position, Stop *stop);
   /// The newest one in the directory, its name without it; empty = none. Known to all ranks.
   std::string newest() const;

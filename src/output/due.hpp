@@ -1,4 +1,4 @@
-// When something written at an interval of simulated time is due.
+// Schedule of an output at an interval of simulated time.
 #pragma once
 
 #include <algorithm>
@@ -7,13 +7,13 @@
 
 namespace eulastic {
 
-/// Due at the first state at or after each multiple of the interval. All it remembers is when it was written last:
-/// a restart with another interval needs nothing else.
+/// Due at the first state at or after each multiple of the interval. Its only state is the time of the last output, so
+/// that a restart may change the interval.
 struct Due {
   double interval = 0;    ///< 0 = never
   double last_time = -1;  ///< negative: not yet
 
-  /// Times that are meant to hit a multiple miss it by round-off.
+  /// Tolerance for times that miss a multiple by round-off.
   double multiple(double time) const { return std::floor(time / interval + 1e-9); }
   /// Multiples after `from` and after the last one written, and before `to`.
   std::vector<double> between(double from, double to) const {

@@ -29,9 +29,10 @@ Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
                                    : std::string("within all known limits; lower -time_step, more -grid_cells"))};
 }
 
-Stop crowded(const Solver &solver) {
+Stop stop_reason(const Solver &solver) {
   const State &state = solver.state();
-  return {"guard", print("step %lld, t = %.9g: ", static_cast<long long>(state.step), state.time) + solver.crowded()};
+  return {"guard",
+          print("step %lld, t = %.9g: ", static_cast<long long>(state.step), state.time) + solver.stop_reason()};
 }
 
 }  // namespace
@@ -50,8 +51,8 @@ PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &ext
     *stop = not_finite(solver, extremes);
     PetscFunctionReturn(0);
   }
-  if (!solver.crowded().empty()) {
-    *stop = crowded(solver);
+  if (!solver.stop_reason().empty()) {
+    *stop = stop_reason(solver);
     PetscFunctionReturn(0);
   }
   double courant = 0;
@@ -75,7 +76,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   PetscFunctionBeginUser;
   const State &state = solver.state();
   if (state.step == 0) PetscFunctionReturn(0);
-  // Flow that has come to rest has no scale: no smaller one than a Courant number of 1e-6, as in the solver.
+  // Flow at rest has no velocity scale: as in the solver the scale is at least that of a Courant number of 1e-6.
   const Real3 &h = solver.domain().spacing();
   const double rest = 1e-6 * *std::min_element(h.begin(), h.begin() + solver.domain().dimension()) / state.dt;
   const double divergence = m.flow.divergence_rms * std::min(1.0, m.flow.speed_max / rest);
@@ -114,7 +115,7 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
 
 PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
   PetscFunctionBeginUser;
-  if (!solver.crowded().empty()) *stop = crowded(solver);
+  if (!solver.stop_reason().empty()) *stop = stop_reason(solver);
   if (*stop) PetscFunctionReturn(0);
   FlowExtremes extremes;
   PetscCall(measure_extremes(solver.domain(), solver.state().velocity, solver.state().phases, &extremes,

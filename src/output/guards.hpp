@@ -1,9 +1,10 @@
-// Bounds that stop a run before it goes on with wrong numbers: -guard_*, and fields that are not finite.
+// Bounds that stop a run with wrong numbers: -guard_*, and fields that are not finite.
 //
-// They look at numbers that others have found: the limits of the time step, the measures of the flow. Only a run that
-// stops pays for finding the place.
+// They check numbers that are measured anyway: the limits of the time step and the measures of the flow. The position
+// of a violation is searched only if the run stops.
 #pragma once
 
+#include "adhesion/bond_records.hpp"
 #include "base/petsc.hpp"
 #include "bodies/measures.hpp"
 #include "diagnostics/flow_measures.hpp"
@@ -17,10 +18,10 @@
 
 namespace eulastic {
 
-/// Why a run has to stop; nothing = it goes on.
+/// Why a run has to stop; empty = it continues.
 struct Stop {
   std::string reason;   ///< exit_reason of summary.json: nonfinite or guard
-  std::string message;  ///< one line: step, time, place, what is beyond which limit, what to change
+  std::string message;  ///< one line: step, time, position, violated limit, remedy
   explicit operator bool() const { return !reason.empty(); }
 };
 
@@ -39,9 +40,11 @@ struct Measured {
   std::vector<SurfaceLoad> surface_loads;  ///< of the others that bear loads
   std::vector<BodyMeasure> bodies;         ///< that this rank owns
   std::vector<SurfaceMeasure> surfaces;    ///< of the same bodies; empty without membranes
-  double volume_drift = 0;                 ///< of the body that has changed most
-  double resolved_drift = 0;  ///< of the body that has changed most, of those as large as a few cells at the start
-  int drifting_body = 0;      ///< its label
+  BondTotals bonds;                        ///< of the middle of the last step
+  std::vector<BodyBonds> body_bonds;       ///< of the bodies that this rank owns; empty without adhesion
+  double volume_drift = 0;                 ///< largest of all bodies
+  double resolved_drift = 0;               ///< largest of the bodies of at least a few cells at the start
+  int drifting_body = 0;                   ///< its label
   Real3 drifting_place{};
   double energy_made = 0;  ///< EnergyBudget::made_share()
   Largest stretch;         ///< of all bodies

@@ -29,7 +29,7 @@ void Outputs::start(const Config &config, const Domain &domain, Solver *solver, 
   if (4 * apart > solver->limits({}).forcing)
     energy_unknown_ =
         "rows of series.csv are too far apart to resolve the oscillation; use a -series_interval of a quarter period";
-  else if (has_feeders(config.sides) && !config.species.empty())
+  else if (has_inlet_generators(config.sides) && !config.species.empty())
     energy_unknown_ = "bodies that enter through a boundary carry energy that is not counted";
   mach_max_ = position.mach_max;
 }
@@ -47,7 +47,8 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   if (solver_->bodies().bodies() > 0) {
     const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
                                    [](const SpeciesSpec &spec) { return spec.bears_load(); });
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", membranes_, loads);
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5",
+                                                BodiesColumns{membranes_, loads, solver_->part<Adhesion>() != nullptr});
     bodies_rows_ = same_directory ? position.bodies_rows : 0;
     if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
   }
@@ -129,7 +130,7 @@ PetscErrorCode Outputs::write_due(bool last) {
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
   if (Adhesion *adhesion = solver_->part<Adhesion>()) {
-    if (probes) PetscCall(bond_files_.write_bodies(state.time, adhesion));
+    if (probes) PetscCall(bond_files_.write_events(adhesion));
     if (snapshot) PetscCall(bond_files_.write_bonds(state.time, *adhesion));
   }
   if (samples)
@@ -194,7 +195,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   StageScope stage(Stage::output);
   const State &state = solver_->state();
   PetscCall(measure());
-  // What could not be written is not tried again: after an fsync that failed the system forgets what it had to write.
+  // A failed write is not repeated: after a failed fsync the system drops the data.
   if (bodies_file_ && summary.exit_reason != "output_failed") PetscCall(bodies_file_->flush());
   summary.method = config_.method.kind == MethodKind::classic ? "classic" : "fast";
   summary.pressure_solver = std::array{"acm", "smac", "ksp"}[static_cast<int>(config_.method.pressure)];

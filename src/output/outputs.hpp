@@ -1,4 +1,4 @@
-// What a run leaves behind: series.csv, bodies.h5, snapshots, summary.json. Looks at the state, never touches it.
+// Output files of a run: series.csv, bodies.h5, snapshots, summary.json. Reads the state without changing it.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -22,7 +22,7 @@
 
 namespace eulastic {
 
-/// How far the files of a run have come: what a restart needs to go on with them.
+/// Position in the output files of a run, which a restart needs to continue them.
 struct OutputsPosition {
   long series_rows = 0, bodies_rows = 0, snapshots = 0;
   double series_time = -1, snapshot_time = -1, profile_time = -1;  ///< of the last one; negative: none yet
@@ -33,39 +33,39 @@ struct OutputsPosition {
 
 class Outputs {
 public:
-  /// Can measure from here on. `position`: how far the run had come that goes on.
+  /// Measures are available after this call. `position`: of the run that a restart continues.
   void start(const Config &config, const Domain &domain, Solver *solver, const OutputsPosition &position);
-  /// Opens the files in `directory`, which exists and is ours. In that of a run that goes on its files are cut back to
-  /// `position`.
+  /// Opens the files in `directory`, which exists and is locked by this run. At a restart in the same directory its
+  /// files are cut back to `position`.
   PetscErrorCode open(const std::string &directory, const OutputsPosition &position, bool same_directory);
   /// Rank 0 has moved the files.
   void moved_to(const std::string &directory);
-  /// Brings all rows to the disk and says how far they are.
+  /// Syncs all rows to the disk and returns their position.
   PetscErrorCode sync(OutputsPosition *position);
-  /// Writes whatever has become due: the first state at or after each multiple of the interval, with its true time. A
-  /// row of series.csv waits where phases are behind, but for the last one.
+  /// Writes all outputs that are due: the first state at or after each multiple of the interval, with its true time.
+  /// Where phases are half a step behind, a row of series.csv waits, except for the last one.
   PetscErrorCode write_due(bool last);
   bool row_waits() const { return waits_; }
   /// After a restart: the row of the checkpoint waits again, if it did.
   PetscErrorCode resume_row();
-  /// In the middle of the next step, of dt: the row that waits becomes what lies between that and the last middle; the
+  /// In the middle of the next step, of length dt: interpolates the waiting row between this middle and the last; the
   /// next write_due() writes it.
-  PetscErrorCode see_middle(double dt);
-  /// Later in that step, with its pressure and the velocity of its start: the same of what passes the sides.
-  PetscErrorCode see_pressure(double dt);
+  PetscErrorCode record_middle(double dt);
+  /// Later in that step, with its pressure and the velocity of its start: the same for the flow through the boundaries.
+  PetscErrorCode record_pressure(double dt);
   /// Writes the row that waits if there is no next step.
   PetscErrorCode write_waiting();
   /// The last row, once; null if there is no new one.
   const Measured *take_row();
-  /// One line, once per run, if a red cell or any body is strained much in the last row, or nothing.
+  /// One line, once per run, if a red cell or any body is strongly strained in the last row, or nothing.
   std::string strain_warning();
   /// Measures the state, if that has not been done.
   PetscErrorCode measure();
   /// As of the last measure().
   const Measured &measured() const { return now_.measured; }
-  /// One line about bodies of a few cells at t = 0, which no guard looks at, or nothing. Collective, after measure().
+  /// One line about bodies of a few cells at t = 0, which the guards ignore, or nothing. Collective, after measure().
   PetscErrorCode unresolved_bodies(std::string *line) const;
-  /// summary.json; `summary` comes with what the time loop knows, the rest is filled in here.
+  /// Writes summary.json; `summary` has the numbers of the time loop, the others are added here.
   PetscErrorCode write_summary(Summary summary);
   /// Those of the summary that was written last.
   const std::vector<Summary::Verdict> &verdicts() const { return verdicts_; }
@@ -93,11 +93,11 @@ private:
     std::vector<SideFlow> sides;
   };
   PetscErrorCode look(Measured *measured);
-  PetscErrorCode look_at_energy(const Measured &measured, Row *row);
+  PetscErrorCode measure_energy(const Measured &measured, Row *row);
   PetscErrorCode look(Row *row);
   void set_energy_scales(EnergyState *energy) const;
   PetscErrorCode await_row(double time_before);
-  PetscErrorCode see_power();
+  PetscErrorCode record_power();
   /// Names and values of the columns of series.csv.
   std::vector<std::pair<std::string, double>> series_row(const Row &row) const;
   PetscErrorCode write_row();

@@ -1,4 +1,4 @@
-// -restart: finds a checkpoint that can be read and fits, and goes on from it.
+// -restart: finds a valid checkpoint and continues from it.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -13,10 +13,10 @@ namespace eulastic {
 PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *position, std::string *path,
                        std::string *refusal);
 
-/// Local. Whether the run goes on in the directory it began in.
+/// Local. Whether the run continues in the directory it began in.
 bool restarts_in_place(const Config &config);
 
-/// Collective. Simulated time after `time` that series.csv in `directory` tells of; 0 if it ends before.
+/// Collective. `thrown_away`: simulated time after `time` that series.csv in `directory` covers; 0 if it ends before.
 PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, double time, double *thrown_away);
 /// Nothing, or one line if a run in place would end before `held`, the time of the last row in its directory.
 std::string shorter_end(const Config &config, double held);

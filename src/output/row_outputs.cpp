@@ -1,4 +1,5 @@
 // Outputs: rows of series.csv and bodies.h5.
+#include "adhesion/adhesion.hpp"
 #include "base/events.hpp"
 #include "diagnostics/energy_budget.hpp"
 #include "output/guards.hpp"
@@ -62,9 +63,9 @@ struct Between {
   }
 };
 
-// `measured` of a time goes `share` of the way to `other`, of a later one, of the same bodies and velocity: linearly,
-// roots of strain energies too. Volume drifts and loads are left.
-void go_between(const Measured &other, double share, Measured *measured) {
+// Moves `measured` by the fraction `share` towards `other`, of a later time with the same bodies and velocity:
+// linearly, for strain energies their square roots. Volume drifts and loads are not changed.
+void interpolate_between(const Measured &other, double share, Measured *measured) {
   const Between between{share};
   const double energy = measured->flow.elastic_energy, linear = energy + share * (other.flow.elastic_energy - energy);
   measured->flow.elastic_energy = energy_between(energy, other.flow.elastic_energy, share);
@@ -77,7 +78,7 @@ void go_between(const Measured &other, double share, Measured *measured) {
     for (BodyMeasure &body : measured->bodies) body.elastic_energy *= measured->flow.elastic_energy / linear;
 }
 
-void go_between(const EnergyState &other, double share, EnergyState *energy) {
+void interpolate_between(const EnergyState &other, double share, EnergyState *energy) {
   const Between between{share};
   energy->elastic = energy_between(energy->elastic, other.elastic, share);
   between(energy->surface, other.surface);
@@ -113,9 +114,13 @@ PetscErrorCode Outputs::look(Measured *measured) {
   if (solver_->bodies().bodies() > 0)
     PetscCall(solver_->bodies().measure(*domain_, *phases, state.velocity, strain_energy, &m.bodies, boxed));
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
-  // Loads are those of pressure, which lives half a step behind, as the bodies that are seen first.
+  // Loads follow from the pressure, which is half a step behind, as are the bodies that are measured first.
   if (!again && solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
   if (!again) PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
+  if (Adhesion *adhesion = solver_->part<Adhesion>(); adhesion && !again) {
+    PetscCall(adhesion->measure(&m.bonds));
+    if (solver_->bodies().bodies() > 0) PetscCall(adhesion->measure(solver_->bodies().bodies(), &m.body_bonds));
+  }
   // beta follows from div v; where that is noise (a wave's passes through 0 twice a period), so is beta.
   constexpr double noise = 1e-5;  // of U/h
   const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
@@ -124,7 +129,7 @@ PetscErrorCode Outputs::look(Measured *measured) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Outputs::look_at_energy(const Measured &measured, Row *row) {
+PetscErrorCode Outputs::measure_energy(const Measured &measured, Row *row) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   const Fluid &fluid = config_.fluid;
@@ -190,7 +195,7 @@ void Outputs::set_energy_scales(EnergyState *energy) const {
 PetscErrorCode Outputs::look(Row *row) {
   PetscFunctionBeginUser;
   PetscCall(look(&row->measured));
-  PetscCall(look_at_energy(row->measured, row));
+  PetscCall(measure_energy(row->measured, row));
   PetscFunctionReturn(0);
 }
 
@@ -211,15 +216,15 @@ PetscErrorCode Outputs::resume_row() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Outputs::see_middle(double dt) {
+PetscErrorCode Outputs::record_middle(double dt) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::output);
   VerbScope scope(Verb::write);
   Row next = row_;
   PetscCall(look(&next));
   const double share = row_.dt / (row_.dt + dt);
-  go_between(next.measured, share, &row_.measured);
-  go_between(next.energy, share, &row_.energy);
+  interpolate_between(next.measured, share, &row_.measured);
+  interpolate_between(next.energy, share, &row_.energy);
   PetscCall(measure_drift(&row_.measured));
   PetscCall(measure_strains(&row_.measured));
   mach_max_ = std::max(mach_max_, row_.measured.mach);
@@ -228,8 +233,8 @@ PetscErrorCode Outputs::see_middle(double dt) {
   PetscFunctionReturn(0);
 }
 
-// The pressure lives half a step beside the velocity, as phases do.
-PetscErrorCode Outputs::see_pressure(double dt) {
+// The pressure is half a step behind the velocity, as phases are.
+PetscErrorCode Outputs::record_pressure(double dt) {
   PetscFunctionBeginUser;
   if (row_.sides.empty()) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
@@ -269,7 +274,7 @@ PetscErrorCode Outputs::write_row_now() {
 }
 
 // Loads of rigid bodies are those of the middle of a step: their power at a row is between those of both steps.
-PetscErrorCode Outputs::see_power() {
+PetscErrorCode Outputs::record_power() {
   PetscFunctionBeginUser;
   if (!solver_->rigid() || !solver_->rigid()->moves) PetscFunctionReturn(0);
   const double share = row_.dt / (row_.dt + solver_->state().dt);
@@ -314,12 +319,20 @@ std::vector<std::pair<std::string, double>> Outputs::series_row(const Row &row) 
   for (const VesselFlow &vessel : vessel_flows(config_, row.measured.time, flow.bulk_velocity, row.sides))
     columns.insert(columns.end(), {{vessel.species + "_flow_rate", vessel.flow_rate},
                                    {vessel.species + "_apparent_viscosity", vessel.apparent_viscosity}});
+  if (!solver_->part<Adhesion>()) return columns;
+  const BondTotals &bonds = row.measured.bonds;
+  columns.insert(columns.end(), {{"bonds", bonds.bonds},
+                                 {"bonds_formed", bonds.formed},
+                                 {"bonds_broken", bonds.broken},
+                                 {"bond_force_x", bonds.force[0]},
+                                 {"bond_force_y", bonds.force[1]},
+                                 {"bond_force_z", bonds.force[2]}});
   return columns;
 }
 
 PetscErrorCode Outputs::write_row() {
   PetscFunctionBeginUser;
-  if (seen_) PetscCall(see_power());
+  if (seen_) PetscCall(record_power());
   waits_ = seen_ = false;
   is_new_ = true;
   Measured &measured = row_.measured;

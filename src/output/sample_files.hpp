@@ -12,8 +12,8 @@ namespace eulastic {
 
 class SampleFiles {
 public:
-  /// Opens what `samples` asks for. Of older rows in these files those of probes until `probes_time` and those of
-  /// profiles until `profile_time` stay; negative: none.
+  /// Opens the files that `samples` requests. Of older rows in these files those of probes until `probes_time` and
+  /// those of profiles until `profile_time` stay; negative: none.
   PetscErrorCode open(const SampleControl &samples, const Domain &domain, const std::string &directory,
                       double probes_time, double profile_time);
   void moved_to(const std::string &directory);

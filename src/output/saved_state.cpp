@@ -8,7 +8,7 @@
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 #include "membranes/membrane_transport.hpp"
-#include "openings/feeders.hpp"
+#include "openings/inlet_generators.hpp"
 #include "output/checkpoint_range.hpp"
 #include "parts/state.hpp"
 
@@ -21,17 +21,22 @@ namespace {
 std::uint64_t hash_name(const std::string &name) { return mix_bits(checksum(name.data(), name.size(), 0)); }
 
 // Bodies in boxes of their own: their heads (FreeBodies::packed), and what follows them, one body after the other.
-constexpr const char *heads_name = "bodies_in_boxes", *values_name = "values_in_boxes";
+// With adhesion how many receptors each has.
+constexpr const char *heads_name = "bodies_in_boxes", *values_name = "values_in_boxes",
+                     *receptors_name = "receptors_in_boxes";
 
 std::vector<CheckpointRecords> boxes_of(const Solver &solver) {
-  CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}};
+  CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}},
+      receptors{receptors_name, 1, {}};
   const FreeBodies &boxed = solver.boxed().bodies();
   for (std::size_t b = 0; b < boxed.bodies().size(); ++b) {
     const std::vector<double> packed = boxed.packed(b);
     heads.values.insert(heads.values.end(), packed.begin(), packed.begin() + FreeBodies::head);
     values.values.insert(values.values.end(), packed.begin() + FreeBodies::head, packed.end());
+    receptors.values.push_back(double(boxed.bodies()[b].receptors.size()));
   }
-  return {heads, values};
+  if (!solver.part<Adhesion>()) return {heads, values};
+  return {heads, values, receptors};
 }
 
 // The values of what is carried.
@@ -59,7 +64,7 @@ void add_position(bool has_bonds, RunPosition *position, CarriedState *state) {
   state->reals["output_times"] = {&o.series_time, &o.snapshot_time, &o.profile_time};
   state->reals["mach_max"] = {&o.mach_max};
   state->integers["output_rows"] = {&o.series_rows, &o.bodies_rows, &o.snapshots};
-  if (has_bonds) state->integers["bond_rows"] = {&o.bonds.bodies, &o.bonds.bonds, &o.bonds.events};
+  if (has_bonds) state->integers["bond_rows"] = {&o.bonds.bonds, &o.bonds.events};
 }
 
 // All numbers of a checkpoint but those of single bodies.
@@ -88,7 +93,7 @@ const char *wrong_length(const CheckpointNumbers &expected, const CheckpointNumb
   return nullptr;
 }
 
-// Of all bodies, on rank 0: what owners know of them, and what feeders do.
+// Numbers of all bodies on rank 0, from their owners and from inlet generators.
 PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
   std::vector<Int3> references;
   std::vector<double> first_volumes;
@@ -99,13 +104,13 @@ PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
   std::vector<long> &cells = numbers->integers["bodies.references"];  // "body_" begins the labels of a species
   for (const Int3 &cell : references) cells.insert(cells.end(), cell.begin(), cell.end());
   numbers->reals["bodies.first_volumes"] = std::move(first_volumes);
-  const Feeders *feeders = solver.part<Feeders>();
-  if (!feeders) PetscFunctionReturn(0);
+  const InletGenerators *generators = solver.part<InletGenerators>();
+  if (!generators) PetscFunctionReturn(0);
   if (!bodies.like().empty()) numbers->integers["bodies_like"].assign(bodies.like().begin(), bodies.like().end());
   std::vector<long> &inside = numbers->integers["bodies_in_feeders"];
   if (solver.domain().rank() > 0) PetscFunctionReturn(0);
   inside.assign(bodies.bodies(), 0);
-  for (const auto &[label, stretch] : feeders->inside()) inside[label - 1] = stretch + 1;
+  for (const auto &[label, stretch] : generators->inside()) inside[label - 1] = stretch + 1;
   PetscFunctionReturn(0);
 }
 
@@ -114,7 +119,7 @@ PetscErrorCode require_range(const Domain &domain, const std::string &path, cons
 }
 
 PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const Domain &domain, BodyTracker *bodies,
-                           Feeders *feeders) {
+                           InletGenerators *generators) {
   const BodyRange own = BodyRange::of(bodies->bodies(), domain.rank(), domain.ranks());
   const hsize_t all = bodies->bodies(), begin = own.begin;
   std::vector<long> cells(3 * own.size());
@@ -124,17 +129,17 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
   if (all == 0) PetscFunctionReturn(0);
   PetscCall(file->read_share("bodies.references", 3 * all, 3 * begin, &cells));
   PetscCall(file->read_share("bodies.first_volumes", all, begin, &first_volumes));
-  PetscCall(require_range(domain, path, find_absurd_body(cells, first_volumes)));
+  PetscCall(require_range(domain, path, find_invalid_body(cells, first_volumes)));
   for (std::size_t n = 0; n < cells.size(); ++n) references[n / 3][n % 3] = static_cast<int>(cells[n]);
   bodies->set_known(std::move(references), std::move(first_volumes));
-  if (!feeders) PetscFunctionReturn(0);
+  if (!generators) PetscFunctionReturn(0);
   std::vector<long> stretches(own.size());
   std::map<int, int> inside;
   PetscCall(file->read_share("bodies_in_feeders", all, begin, &stretches));
-  PetscCall(require_range(domain, path, find_absurd_feeder(stretches, feeders->count())));
+  PetscCall(require_range(domain, path, find_invalid_generator(stretches, generators->count())));
   for (int b = 0; b < own.size(); ++b)
     if (stretches[b] > 0) inside[own.begin + b + 1] = static_cast<int>(stretches[b]) - 1;
-  PetscCall(feeders->set_inside(inside));
+  PetscCall(generators->set_inside(inside));
   PetscFunctionReturn(0);
 }
 
@@ -157,6 +162,11 @@ PetscErrorCode require_different(const Domain &domain, const std::string &path, 
   PetscFunctionReturn(0);
 }
 
+int pairs_of(const Solver &solver) {
+  const auto *adhesion = solver.part<Adhesion>();
+  return adhesion ? static_cast<int>(adhesion->pairs().size()) : 0;
+}
+
 // Some bodies in boxes for each rank, the same values whoever gets them.
 PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver *solver) {
   const Domain &domain = solver->domain();
@@ -165,12 +175,19 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   if (!solver->boxed().exist()) PetscFunctionReturn(0);
   PetscCall(file->read_records(&heads));
   const std::vector<Phase> &phases = solver->state().phases;
-  PetscCall(require_range(domain, path, find_absurd_box(heads.values, domain, solver->bodies(), phases)));
+  PetscCall(require_range(domain, path, find_invalid_box(heads.values, domain, solver->bodies(), phases)));
   PetscCall(require_different(domain, path, solver->bodies().bodies(), heads.values));
+  CheckpointRecords receptors{receptors_name, 1, {}};
+  if (file->has(receptors_name)) PetscCall(file->read_records(&receptors));
+  receptors.values.resize(heads.values.size() / FreeBodies::head);
+  PetscCall(require_range(domain, path, find_invalid_count(receptors_name, receptors.values)));
   std::vector<std::size_t> sizes;
-  for (std::size_t n = 0; n < heads.values.size(); n += FreeBodies::head)
-    sizes.push_back(FreeBodies::packed_values(
-        domain.domain_shape(), phases[static_cast<int>(heads.values[n + 1])].tensor.centred, &heads.values[n]));
+  for (std::size_t b = 0; b < receptors.values.size(); ++b) {
+    const double *head = &heads.values[b * FreeBodies::head];
+    sizes.push_back(
+        FreeBodies::packed_values(domain.domain_shape(), phases[static_cast<int>(head[1])].tensor.centred, head) +
+        static_cast<std::size_t>(receptors.values[b]) * Receptor::numbers);
+  }
   values.values.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
   PetscCall(file->read_own_records(&values));
   solver->boxed().clear();
@@ -187,9 +204,12 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
       block.begin[d] = static_cast<int>(head[2 + d]) - SurfaceCells::layers;
       block.end[d] = static_cast<int>(head[2 + d] + head[5 + d]) + SurfaceCells::layers;
     }
-    const std::vector<double> markers(next - static_cast<int>(head[8]) * SurfaceMarker::numbers, next);
+    const double *first = next - static_cast<int>(receptors.values[b]) * Receptor::numbers;
+    const std::vector<double> markers(first - static_cast<int>(head[8]) * SurfaceMarker::numbers, first);
     if (wrong.empty())
-      wrong = find_absurd_marker(markers, block, solver->bodies().bodies(), static_cast<int>(phases.size()));
+      wrong = find_invalid_marker(markers, block, solver->bodies().bodies(), static_cast<int>(phases.size()));
+    if (wrong.empty()) wrong = find_invalid_receptor({first, next}, solver->bodies().bodies(), pairs_of(*solver));
+    if (!solver->part<Adhesion>()) packed.resize(packed.size() - (next - first));
   }
   PetscCall(require_range(domain, path, wrong));
   for (const std::vector<double> &packed : all) PetscCall(solver->boxed().add_packed(packed));
@@ -215,7 +235,7 @@ PetscErrorCode load_markers(CheckpointFile *file, const std::string &path, Solve
   PetscCall(file->read_records(&records));
   const Extent whole{{0, 0, 0}, domain.domain_cells()};
   const int bodies = solver->bodies().bodies(), species = static_cast<int>(solver->state().phases.size());
-  PetscCall(require_range(domain, path, find_absurd_marker(records.values, whole, bodies, species)));
+  PetscCall(require_range(domain, path, find_invalid_marker(records.values, whole, bodies, species)));
   for (std::size_t n = 0; n < records.values.size(); n += SurfaceMarker::numbers)
     markers.push_back(SurfaceMarker::unpacked(&records.values[n]));
   solver->state().markers.clear();
@@ -250,6 +270,11 @@ PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
     sum += hash_values(values.data(), values.size());
   }
   for (const BodyInBox &body : solver->boxed().list()) sum += hash_body(body);
+  for (const FreeBodies::Body &body : solver->boxed().bodies().bodies())
+    for (const Receptor &receptor : body.receptors) {
+      const auto values = receptor.packed();
+      sum += mix_bits(hash_values(values.data(), values.size()) ^ static_cast<std::uint64_t>(body.number));
+    }
   PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }
@@ -271,17 +296,17 @@ PetscErrorCode save_state(Solver *solver, const RunPosition &run_position, const
 
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position) {
   const Domain &domain = solver->domain();
-  Feeders *feeders = solver->part<Feeders>();
+  InletGenerators *generators = solver->part<InletGenerators>();
   std::vector<long> forgotten, like;
   PetscFunctionBeginUser;
   PetscCall(file->read_if_there("forgotten", &forgotten));
-  if (feeders) {
+  if (generators) {
     PetscCall(file->read_if_there("bodies_like", &like));
     solver->bodies().set_like({});
-    PetscCall(require_range(domain, path, find_absurd_link(like, solver->bodies().bodies())));
+    PetscCall(require_range(domain, path, find_invalid_link(like, solver->bodies().bodies())));
     solver->bodies().set_like(like);
   }
-  PetscCall(require_range(domain, path, find_absurd_count("forgotten", forgotten)));
+  PetscCall(require_range(domain, path, find_invalid_count("forgotten", forgotten)));
   solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
   CarriedState state;
   PetscCall(solver->carry(&state));
@@ -291,8 +316,8 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(file->read_numbers(&numbers));
   const char *wrong = wrong_length(expected, numbers);
   PetscCall(fail_together(domain.comm(), wrong ? path + ": " + wrong + " belongs to another case" : std::string()));
-  PetscCall(require_range(domain, path, find_absurd_number(numbers)));
-  PetscCall(load_bodies(file, path, domain, &solver->bodies(), feeders));
+  PetscCall(require_range(domain, path, find_invalid_number(numbers)));
+  PetscCall(load_bodies(file, path, domain, &solver->bodies(), generators));
   solver->clear_pressure_memory();  // the file may know of fewer increments
   for (Phase &phase : solver->state().phases) phase.empty(domain, bool(phase.label));  // of the scene's start
   PetscCall(load_boxes(file, path, solver));
@@ -306,6 +331,8 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(load_markers(file, path, solver));
   PetscCall(solver->resume(numbers.integers["stages_and_sweeps"][0], numbers.integers["stages_and_sweeps"][1]));
   PetscCall(place_markers(*file, solver));
+  if (auto *adhesion = solver->part<Adhesion>(); adhesion && !file->has(receptors_name))
+    PetscCall(adhesion->place_on_bodies());
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,4 @@
-// The state of a run as a checkpoint, and back.
+// Saves the state of a run in a checkpoint and loads it.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -7,7 +7,7 @@
 
 namespace eulastic {
 
-/// What a run carries from step to step beside the solver's state; the same on all ranks.
+/// State of a run beside the solver's; the same on all ranks.
 struct RunPosition {
   double dt = 0;                                    ///< of the time step control
   double wall_seconds = 0, wall_seconds_total = 0;  ///< of all runs that led here
@@ -19,8 +19,8 @@ PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash);
 /// Collective.
 PetscErrorCode save_state(Solver *solver, const RunPosition &position, const std::string &options,
                           const std::string &path);
-/// Collective. Reads everything into a solver whose scene has been built from the same options and makes it ready to
-/// go on. An error leaves the solver with parts of the file; another file may then be loaded over it.
+/// Collective. Loads a checkpoint into a solver whose scene has been built from the same options, and makes it ready to
+/// continue. After an error the solver contains parts of the file; another file may then be loaded over it.
 PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver *solver, RunPosition *position);
 
 }  // namespace eulastic

@@ -16,7 +16,7 @@ int own_rank = 0;
 // write(2) alone, as a signal may come inside malloc or printf.
 void say(const char *text) { (void)!::write(STDERR_FILENO, text, std::strlen(text)); }
 
-// The step under way may be long, and a launcher may kill before it ends: a word at once.
+// The current step may be long, and a launcher may kill the process before it ends: prints a line at once.
 void remember(int signal) {
   if (speaks && !caught) {
     char line[100] = "eulastic: SIG";
@@ -42,8 +42,8 @@ void handle(int signal, void (*handler)(int), int flags) {
 
 void end_now(int) { _exit(1); }
 
-// Others must not wait for a rank that is gone. MPI_Abort tells them, but takes locks that this process may hold: after
-// five seconds the process ends without it, which the launcher notices.
+// Other ranks must not wait for a dead one. MPI_Abort ends them, but it takes locks that this process may hold: after
+// five seconds the process exits without it, which the launcher detects.
 void end_all(int signal) {
   char text[160];
   const int length = std::snprintf(

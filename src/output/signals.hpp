@@ -9,7 +9,7 @@ namespace eulastic {
 void catch_signals();
 /// Local. SIGSEGV, SIGFPE, SIGABRT and the like: one line, then all ranks end. Call after PetscInitialize.
 void catch_faults();
-/// Local: whether this process has been asked. All ranks must agree before anything is done about it.
+/// Local: whether this process has received a signal. All ranks must agree before they act on it.
 bool signal_caught();
 
 }  // namespace eulastic

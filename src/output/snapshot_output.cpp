@@ -9,7 +9,7 @@
 namespace eulastic {
 namespace {
 
-bool wants(const OutputControl &output, const char *name) {
+bool is_requested(const OutputControl &output, const char *name) {
   const auto &fields = output.snapshot_fields;
   return std::find(fields.begin(), fields.end(), name) != fields.end();
 }
@@ -26,7 +26,7 @@ SnapshotField as_field(const WallStress &wall, Stored precision) {
 
 SnapshotSelection selection(const Config &config) {
   const OutputControl &output = config.output;
-  const auto wanted = [&](const char *name) { return wants(output, name); };
+  const auto wanted = [&](const char *name) { return is_requested(output, name); };
   SnapshotSelection s;
   s.velocity = wanted("velocity");
   s.pressure = wanted("pressure");
@@ -77,7 +77,7 @@ PetscErrorCode SnapshotOutput::write_fields(const Config &config, Solver *solver
   std::vector<SnapshotField> fields = fields_.collect(wanted, state.velocity, state.pressure, phases);
   std::vector<WallStress> walls;
   Field rigid, elastic, stress, widened;
-  if (wants(config.output, "wall_shear_stress") || config.output.snapshot_vti) {
+  if (is_requested(config.output, "wall_shear_stress") || config.output.snapshot_vti) {
     EdgeViscosity of_place{domain, config.fluid.viscosity, config.fluid.density, viscosity};
     walls = wall_shear_stress(domain, config.sides, state.time, of_place, state.velocity, phases);
     PetscCall(solid_of_vessels(config, true, phases, solver, &rigid));

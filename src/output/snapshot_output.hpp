@@ -1,4 +1,4 @@
-// The snapshots of a run: fields of the state, and what is measured for them on walls and surfaces.
+// Snapshots of a run: fields of the state, and stresses on walls and surfaces.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -19,7 +19,7 @@ public:
   PetscErrorCode resume(int count, bool same_directory) { return writer_.resume(count, same_directory); }
   void moved_to(const std::string &directory) { writer_.moved_to(directory); }
   int count() const { return writer_.count(); }
-  /// Of the state as it is, which is not touched. Collective.
+  /// Writes a snapshot of the present state, which is not changed. Collective.
   PetscErrorCode write(const Config &config, Solver *solver);
 
 private:

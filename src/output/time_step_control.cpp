@@ -63,10 +63,10 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TimeStepControl::forget_unresolved(Solver *solver, std::string *warning) {
+PetscErrorCode TimeStepControl::reset_unresolved(Solver *solver, std::string *warning) {
   PetscFunctionBeginUser;
   if (!measured_) PetscFunctionReturn(0);
-  PetscCall(solver->forget_unresolved(extremes_));
+  PetscCall(solver->reset_unresolved(extremes_));
   if (solver->state().forgotten == 0 || unresolved_ || !warning->empty()) PetscFunctionReturn(0);
   *warning = unresolved(solver->state());
   unresolved_ = true;

@@ -13,12 +13,12 @@ class TimeStepControl {
 public:
   explicit TimeStepControl(const TimeControl &time) : time_(time) {}
 
-  /// The dt of the next step, if the guards let it pass. A dt that the user forces beyond a limit, or one with which
-  /// the run will hardly end, makes `warning` one line, once.
+  /// The dt of the next step, if the guards accept it. `warning`: one line, once, if the user's dt exceeds a limit or
+  /// if the run would need too many steps.
   PetscErrorCode choose(Solver *solver, const Guards &guards, double *dt, Stop *stop, std::string *warning);
-  /// After choose(), before the step: what the grid does not resolve is forgotten, where choose() has measured. A
-  /// checkpoint between the two restarts to the same bits.
-  PetscErrorCode forget_unresolved(Solver *solver, std::string *warning);
+  /// After choose(), before the step: resets strain that the grid does not resolve, if choose() has measured. A
+  /// checkpoint between the two calls restarts to the same bits.
+  PetscErrorCode reset_unresolved(Solver *solver, std::string *warning);
 
   /// The dt of the last choose() ends the run exactly at -time_end.
   bool ends() const { return ends_; }

@@ -1,4 +1,5 @@
-// What a run says of its own results: energy, volume and area, strain, each "fine", "look" or "do not trust", and why.
+// Verdicts of a run on its own results: energy, volume and area, strain, each "fine", "look" or "do not trust", with a
+// reason.
 //
 // Thresholds: docs/outputs.md, "The verdict".
 #pragma once
@@ -9,7 +10,7 @@
 
 namespace eulastic {
 
-/// What a verdict follows from.
+/// Input of the verdicts.
 struct Evidence {
   const EnergyBudget &budget;
   const std::string &energy_unknown;  ///< why the budget cannot be judged, or empty

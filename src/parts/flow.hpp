@@ -51,7 +51,7 @@ struct Flow {
   /// Faces of the rigid bodies and their surface velocities within a step; null if the scene has no rigid bodies.
   const RigidFaces *rigid = nullptr;
   RigidMeans *rigid_means = nullptr;
-  std::string crowded;  ///< one line that says why bodies cannot stay where they are; empty if they can
+  std::string stop_reason;  ///< one line that says why bodies cannot stay where they are; empty if they can
   std::vector<FlowPart *> parts;
 
   /// Borrows the memory of slope and velocity_star, which hold nothing between steps.

@@ -23,10 +23,10 @@ const Multigrid::Relaxations on_finest{0.7, {0.57, 1.5}}, on_coarse{0.8, {0.54, 
 // Levels of at most this size are gathered, because messages cost more than cells.
 constexpr double gathered_cells = 4096;
 
-std::unique_ptr<MultigridLevel> finest(const Domain &domain) {
+std::unique_ptr<MultigridLevel> finest(const Domain &domain, const ZeroSides &zero) {
   MultigridLevel::Widths equal;
   for (int d = 0; d < 3; ++d) equal[d].assign(domain.domain_cells()[d], 1.0);
-  return std::make_unique<MultigridLevel>(Partition(domain), equal, domain.spacing());
+  return std::make_unique<MultigridLevel>(Partition(domain, zero), equal, domain.spacing());
 }
 
 // The level after `fine`: half the cells; or the same cells on every rank if there are few of them; or the same cells
@@ -162,9 +162,9 @@ const Multigrid::Relaxations &Multigrid::relaxations(const MultigridLevel &level
   return level.box().domain_cells() == levels_[0]->box().domain_cells() ? on_finest : on_coarse;
 }
 
-std::vector<Multigrid::Level> Multigrid::plan(const Domain &domain) {
+std::vector<Multigrid::Level> Multigrid::plan(const Domain &domain, const ZeroSides &zero) {
   std::vector<Level> levels;
-  levels.push_back(finest(domain));
+  levels.push_back(finest(domain, zero));
   while (!levels.back()->single_cell()) levels.push_back(next_level(*levels.back()));
   return levels;
 }
@@ -182,9 +182,9 @@ std::string Multigrid::shares(const Domain &domain) {
                fewer.c_str(), gathered, 1e-6 * sizeof(double) * gathered);
 }
 
-PetscErrorCode Multigrid::create(const Domain &domain) {
+PetscErrorCode Multigrid::create(const Domain &domain, const ZeroSides &zero) {
   PetscFunctionBeginUser;
-  levels_ = plan(domain);
+  levels_ = plan(domain, zero);
   flops_ = 0;
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     MultigridLevel &fine = *levels_[l], &next = *levels_[l + 1];
@@ -209,6 +209,10 @@ PetscErrorCode Multigrid::create(const Domain &domain) {
   PetscFunctionReturn(0);
 }
 
+void Multigrid::set_shift(double shift) {
+  for (const Level &level : levels_) level->set_shift(shift);
+}
+
 std::size_t Multigrid::bytes() const {
   std::size_t sum = 0;
   for (const Level &level : levels_) sum += level->rhs.bytes() + level->solution.bytes() + level->scratch.bytes();
@@ -231,8 +235,8 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const Field &rhs, Field &solution
                                 const RowsDone &rows_done) {
   PetscFunctionBeginUser;
   MultigridLevel &level = *levels_[l];
-  if (level.single_cell()) {  // 0 without an open boundary, because the solution is defined up to a constant
-    if (level.has_cells() && level.box().any_open()) solution[0](0, 0, 0) = level.step() * rhs[0](0, 0, 0);
+  if (level.single_cell()) {  // 0 without an inverse, because the solution is defined up to a constant
+    if (level.has_cells() && level.is_regular()) solution[0](0, 0, 0) = level.step() * rhs[0](0, 0, 0);
     PetscFunctionReturn(0);
   }
   MultigridLevel &next = *levels_[l + 1];

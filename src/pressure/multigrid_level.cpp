@@ -43,7 +43,6 @@ MultigridLevel::MultigridLevel(const Partition &partition, const Widths &widths,
                 }),
       widths_(widths),
       finest_spacing_(finest_spacing) {
-  double diagonal = 0;
   for (int d = 0; d < 3; ++d) {
     const std::vector<double> &w = widths_[d];
     const int cells = box().domain_cells()[d], begin = box().layout().begin[d];
@@ -60,11 +59,16 @@ MultigridLevel::MultigridLevel(const Partition &partition, const Widths &widths,
       high_[d].push_back(coupling(high_wall, box().is_open(d, true), above));
     }
     if (cells > 1)
-      diagonal += 2 / (h * h * w[0] * w[0]);
+      diagonal_ += 2 / (h * h * w[0] * w[0]);
     else
-      diagonal += low_[d][0] + high_[d][0];
+      diagonal_ += low_[d][0] + high_[d][0];
   }
-  step_ = diagonal > 0 ? -1 / diagonal : 0;
+  set_shift(0);
+}
+
+void MultigridLevel::set_shift(double shift) {
+  shift_ = shift;
+  step_ = diagonal_ + shift > 0 ? -1 / (diagonal_ + shift) : 0;
 }
 
 std::unique_ptr<MultigridLevel> MultigridLevel::coarser() const {

@@ -51,10 +51,14 @@ public:
   bool single_cell() const { return box().domain_cell_count() == 1; }
   /// Whether this rank has cells.
   bool has_cells() const { return box().cell_count() > 0; }
-  /// The step of an undamped relaxation, 1 / (sum over directions of -2/h^2).
+  /// Sets the operator to lap - shift (1/length^2, not negative); it is lap at first.
+  void set_shift(double shift);
+  /// The step of an undamped relaxation, 1 / (sum over directions of -2/h^2, less the shift).
   double step() const { return step_; }
+  /// Whether the operator has an inverse: the solution is 0 on some boundary, or there is a shift.
+  bool is_regular() const { return shift_ > 0 || box().any_open(); }
   kernels::LineCoefficients coefficients(int j, int k) const {
-    return {low_[0].data(), high_[0].data(), low_[1][j], high_[1][j], low_[2][k], high_[2][k]};
+    return {low_[0].data(), high_[0].data(), low_[1][j], high_[1][j], low_[2][k], high_[2][k], shift_};
   }
 
   /// The next coarser level: halved in the directions whose spacing is about the smallest.
@@ -79,7 +83,8 @@ private:
   Widths widths_;
   Real3 finest_spacing_;
   std::array<LineOf<double>, 3> low_, high_;
-  double step_ = 0;
+  double diagonal_ = 0;  ///< of -lap in a cell inside
+  double step_ = 0, shift_ = 0;
 };
 
 }  // namespace eulastic

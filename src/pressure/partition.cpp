@@ -24,11 +24,15 @@ std::vector<Point> points_along(const Box &box, const Split &split, int d) {
 
 }  // namespace
 
-Partition::Partition(const Domain &domain)
-    : comm_(domain.comm()), rank_(domain.rank()), ranks_(domain.ranks()), split_(domain.split()), box_(domain) {}
+Partition::Partition(const Domain &domain, const ZeroSides &zero)
+    : comm_(domain.comm()), rank_(domain.rank()), ranks_(domain.ranks()), split_(domain.split()), box_(domain) {
+  if (zero == domain.domain_shape().open) return;
+  DomainShape shape = domain.domain_shape();
+  shape.open = zero;
+  set_box(shape, shape.cells);
+}
 
-void Partition::set_box(const Int3 &cells) {
-  DomainShape shape = box_.domain_shape();
+void Partition::set_box(DomainShape shape, const Int3 &cells) {
   shape.cells = cells;
   box_ = split_.box_of(rank_, shape, box_.layout().ghosts[0]);
 }
@@ -41,7 +45,7 @@ Partition Partition::coarse(const Int3 &cells) const {
     for (int &start : starts) start = std::min(cells[d], (start + 1) / 2);
     starts.back() = cells[d];
   }
-  result.set_box(cells);
+  result.set_box(box_.domain_shape(), cells);
   return result;
 }
 
@@ -57,7 +61,7 @@ Partition Partition::joined(const std::array<bool, 3> &along) const {
     for (int p = split_.parts(d) - 1; p >= 0; --p)
       if (!stays[p]) starts[p] = starts[p + 1];
   }
-  result.set_box(box_.domain_cells());
+  result.set_box(box_.domain_shape(), box_.domain_cells());
   return result;
 }
 
@@ -67,7 +71,7 @@ Partition Partition::everywhere() const {
   result.rank_ = 0;
   result.ranks_ = 1;
   for (int d = 0; d < 3; ++d) result.split_.starts[d] = {0, box_.domain_cells()[d]};
-  result.set_box(box_.domain_cells());
+  result.set_box(box_.domain_shape(), box_.domain_cells());
   return result;
 }
 

@@ -6,10 +6,15 @@
 
 namespace eulastic {
 
+/// Boundaries of the domain, [direction][low, high], where the solution is 0; on the others its normal derivative is.
+using ZeroSides = std::array<std::array<bool, 2>, 3>;
+
 class Partition {
 public:
   /// The distribution of the domain's DMDA.
-  explicit Partition(const Domain &domain);
+  explicit Partition(const Domain &domain) : Partition(domain, domain.domain_shape().open) {}
+  /// The same, with open boundaries where the solution is 0.
+  Partition(const Domain &domain, const ZeroSides &zero);
   /// The domain with fewer cells. In a direction with fewer cells the first cell of each rank is half of the former
   /// one, rounded up.
   Partition coarse(const Int3 &cells) const;
@@ -29,8 +34,8 @@ public:
   std::vector<Ghost> ghosts() const;
 
 private:
-  /// Sets box_ for a domain of `cells`, divided by split_.
-  void set_box(const Int3 &cells);
+  /// Sets the box to the part of this rank in a domain of `cells`, divided by split_.
+  void set_box(DomainShape shape, const Int3 &cells);
 
   MPI_Comm comm_;
   int rank_, ranks_;

@@ -166,7 +166,7 @@ PetscErrorCode RigidFlow::position_phases(double time, std::vector<Phase> *phase
 
 PetscErrorCode RigidFlow::end_step() {
   PetscFunctionBeginUser;
-  if (!bodies_->contact_message().empty()) flow_.crowded = bodies_->contact_message();
+  if (!bodies_->contact_message().empty()) flow_.stop_reason = bodies_->contact_message();
   PetscFunctionReturn(0);
 }
 

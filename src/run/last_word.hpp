@@ -1,4 +1,4 @@
-// What a run says at its start and at its end.
+// First and last line of a run.
 #pragma once
 
 #include "options/parse_options.hpp"
@@ -15,10 +15,10 @@ struct Ending {
   std::string checkpoint;  ///< newest one in the directory, or empty
 };
 
-/// One line: what runs, and where it writes.
+/// One line with the version, the size and the output directory.
 std::string first_word(const Config &config, int ranks);
-/// One line: why it ended, where, where the results are, and the command that goes on with it, for a shell in the
-/// directory in which it was started.
+/// One line: the reason of the end, time and step, the output directory, and the command that continues the run, for a
+/// shell in the directory in which it was started.
 std::string last_word(const ParseResult &parsed, const Ending &end);
 
 }  // namespace eulastic

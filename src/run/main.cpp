@@ -46,7 +46,7 @@ int program(int argc, char **argv) {
   int petsc_count = static_cast<int>(petsc.size()) - 1;
   char **petsc_arguments = petsc.data();
   if (PetscInitialize(&petsc_count, &petsc_arguments, nullptr, nullptr)) return exit_failed;
-  // Who sends to whom is found without a number for every rank on every rank.
+  // Neighbours are found without an array over all ranks on every rank.
   (void)PetscCommBuildTwoSidedSetType(PETSC_COMM_WORLD, PETSC_BUILDTWOSIDED_IBARRIER);
   catch_faults();
   const int code = act(parsed);
@@ -54,7 +54,7 @@ int program(int argc, char **argv) {
   return finalize() && code == exit_fine ? exit_failed : code;
 }
 
-// What no verb expects, memory that is not there above all. The other ranks must not wait for this one.
+// Handles unexpected exceptions, above all lack of memory. The other ranks must not wait for this one.
 int give_up(const char *what) {
   int initialised = 0, rank = 0;
   MPI_Initialized(&initialised);

@@ -1,4 +1,4 @@
-// What the program does with a parsed command line: answers, runs, or refuses. PETSc must be initialised.
+// Acts on a parsed command line: prints an answer, runs the case, or refuses it. PETSc must be initialised.
 #pragma once
 
 #include "options/parse_options.hpp"

@@ -92,7 +92,7 @@ PetscErrorCode print_warnings(const Config &config, const std::string &overlap, 
   PetscFunctionReturn(0);
 }
 
-// The guards on a state that has not met them yet.
+// Checks a state that the guards have not checked yet.
 PetscErrorCode check_state(Run *run) {
   PetscFunctionBeginUser;
   PetscCall(run->guards.check_finite(run->solver, &run->stop));
@@ -136,7 +136,7 @@ PetscErrorCode write_summary(const std::string &reason, Run *run) {
   PetscFunctionReturn(0);
 }
 
-// A run may be killed at any moment: until it ends, summary.json tells of its first step or its last checkpoint.
+// A run may be killed at any moment: until it ends, summary.json describes its first step or its last checkpoint.
 PetscErrorCode note(Run *run) {
   PetscFunctionBeginUser;
   if (run->accepted && run->checkpoints.newest() == run->noted) PetscFunctionReturn(0);
@@ -145,8 +145,8 @@ PetscErrorCode note(Run *run) {
   PetscFunctionReturn(0);
 }
 
-// The run has passed its first step: what is in its directory may give way to it. Whether a run goes on must not depend
-// on what its directory held, so guards look when they would have looked anyway.
+// The run has passed its first step, so that it may replace earlier files in its directory. Whether a run continues
+// must not depend on earlier files, so the guards check at the usual times only.
 PetscErrorCode accept(Run *run) {
   PetscFunctionBeginUser;
   if (!run->directory.pending()) PetscFunctionReturn(0);
@@ -196,8 +196,8 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
     };
     {
       StageScope stage(Stage::step);
-      PetscCall(control->forget_unresolved(&solver, &warning));
-      PetscCall(solver.step(dt, timed(&Outputs::see_middle), timed(&Outputs::see_pressure)));
+      PetscCall(control->reset_unresolved(&solver, &warning));
+      PetscCall(solver.step(dt, timed(&Outputs::record_middle), timed(&Outputs::record_pressure)));
     }
     print_warning(solver.domain().comm(), warning);
     run->position.wall_seconds += MPI_Wtime() - step_begin - looked;
@@ -223,7 +223,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
   PetscFunctionReturn(0);
 }
 
-// -load_balance, of what has been set up: on another grid, if that is better, all of it is set up once more.
+// -load_balance: if other cuts between ranks are better, the scene is built again with them.
 PetscErrorCode balance(const std::string &restarted_from, Domain *domain, Run *run, std::string *line,
                        std::string *refusal) {
   PetscFunctionBeginUser;

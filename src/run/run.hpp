@@ -1,4 +1,4 @@
-// One run, from a validated Config to its last file.
+// Runs a case from a validated Config to its last output file.
 #pragma once
 
 #include "base/petsc.hpp"

@@ -11,7 +11,7 @@ struct Node {
   int own_processors = 0;  ///< that this rank may use
 };
 
-PetscErrorCode look_at_node(MPI_Comm comm, Node *node) {
+PetscErrorCode query_node(MPI_Comm comm, Node *node) {
   PetscFunctionBeginUser;
   MPI_Comm on_node;
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &on_node));
@@ -37,7 +37,7 @@ PetscErrorCode choose_waiting(MPI_Comm comm, int threads, const std::string &wan
   }
   if (threads == 1) PetscFunctionReturn(0);
   Node node;
-  PetscCall(look_at_node(comm, &node));
+  PetscCall(query_node(comm, &node));
   const bool fit = node.own_processors >= threads && node.processors >= node.ranks * threads;
   choice->how = wanted == "spin" || (wanted == "" && fit) ? Waiting::spin : Waiting::sleep;
   choice->line = std::to_string(node.ranks * threads) + " threads on " + std::to_string(node.processors) +

@@ -1,4 +1,4 @@
-// How the threads of this run wait for work, from what the node has.
+// Chooses how the threads of this run wait for work, from the processors of the node.
 #pragma once
 
 #include "base/petsc.hpp"

@@ -5,7 +5,7 @@
 
 namespace eulastic {
 
-/// One line, or nothing.
-std::string check_adhesion(const Config &config);
+/// Reads the files of adhesive regions. Collective. Returns one line on what is wrong, or nothing.
+std::string check_adhesion(Config *config);
 
 }  // namespace eulastic

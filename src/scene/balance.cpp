@@ -166,7 +166,8 @@ PetscErrorCode balance_ranks(const Solver &solver, GridSpec *spec, std::string *
 
 namespace {
 
-// First unit of each rank if all take from the end what `bound` allows. `sums`: of the units before each.
+// First unit of each rank if every rank takes as many units from the end as `bound` allows. `sums`: costs of all units
+// before each.
 std::vector<int> earliest(const std::vector<double> &sums, int parts, double bound) {
   std::vector<int> first(parts + 1, static_cast<int>(sums.size()) - 1);
   for (int p = parts - 1; p >= 0; --p) {

@@ -58,7 +58,7 @@ private:
     return walls == 0 ? 0 : (walls == 1 ? 2 : 1) * config_.grid.length[d];
   }
 
-  // A fluid that nothing touches moves as a whole.
+  // A fluid without walls or bodies moves uniformly.
   bool has_something_that_shears() const { return !config_.species.empty() || gap(0) > 0 || gap(1) > 0 || gap(2) > 0; }
 
   // The direction in which the flow is driven through a vessel from a file: of open sides, else of the largest force,
@@ -199,7 +199,7 @@ BodyCount count_bodies(const Config &config, std::size_t s) {
 
 bool is_wall_species(const Config &config, std::size_t s) {
   const SpeciesSpec &spec = config.species[s];
-  if (spec.material().attached || spec.law == Law::rigid || is_vessel_of_file(config, s)) return true;
+  if (spec.material().anchored || spec.law == Law::rigid || is_vessel_of_file(config, s)) return true;
   bool random = false;  // bodies from files are then what the others are put around
   for (const SpeciesSpec &other : config.species) random = random || other.placement == Placement::random;
   return spec.shape == Shape::voxels && random;

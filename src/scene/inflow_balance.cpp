@@ -1,5 +1,5 @@
-// Cosines of different frequencies, and what is linear in pieces, are linearly independent on any piece: so the flow
-// rates cancel at every time if the cosines of each frequency do, and the tables at each of their rows.
+// Cosines of different frequencies and piecewise linear functions are linearly independent on any interval: the flow
+// rates cancel at every time if the cosines of each frequency cancel, and the tables cancel at each of their rows.
 #include "scene/inflow_balance.hpp"
 
 #include "io/option_values.hpp"
@@ -21,8 +21,8 @@ struct Inflow {
   bool oscillates() const { return course->table.empty() && course->frequency > 0; }
 };
 
-// Times of all rows, from the start to the last row of the tables that do not repeat and for the sum of the periods of
-// those that do: a sum of functions with these periods that is 0 for so long is 0 for ever.
+// Times of all rows, from the start to the last row of the tables that do not repeat, and for the sum of the periods of
+// those that do: a sum of functions with these periods that vanishes for so long vanishes always.
 std::vector<double> row_times(const std::vector<Inflow> &inflows, double end) {
   double last = 0, periods = 0;
   for (const auto &[course, area] : inflows) {

@@ -1,14 +1,14 @@
-// What comes in through inflow sides of a box that has no open side.
+// Balance of the inflow in a box without open boundaries.
 #pragma once
 
 #include "scene/config.hpp"
 
 namespace eulastic {
 
-/// The area of a side of direction d; in 2-D its length.
+/// The area of a boundary of direction d; in 2-D its length.
 double area_of_side(const Config &config, int d);
-/// Where no side is open the flow rates of all inflow sides must have the sum 0 at every time of the run, to round-off.
-/// Empty, or one line.
+/// Without an open boundary the flow rates of all inflow boundaries must have the sum 0 at every time of the run, to
+/// round-off. Returns an error of one line, or nothing.
 std::string check_inflow_balance(const Config &config);
 
 }  // namespace eulastic

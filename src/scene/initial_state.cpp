@@ -14,7 +14,7 @@
 namespace eulastic {
 namespace {
 
-// phi of a WENO5 run overshoots a little; what is further out is a mistake.
+// phi of a WENO5 run overshoots slightly; values further out are errors.
 constexpr double overshoot = 0.1;
 const std::vector<TensorComponent> all_components = tensor_components(3);
 
@@ -84,7 +84,7 @@ PetscErrorCode InitialState::check_names() {
   PetscFunctionReturn(0);
 }
 
-// The dataset of a species, or nothing. What several species have in common is of no use.
+// The dataset of a species, or nothing. A dataset without the name of a species is not used where there are several.
 std::string InitialState::name_for(const std::string &base, const SpeciesSpec &species) const {
   const std::string own = base + "_" + species.name;
   if (file_.has(own)) return own;

@@ -1,7 +1,7 @@
-// -initial_state: fields of the start from an HDF5 file, each at its own staggered place; a snapshot is such a file.
+// -initial_state: reads initial fields from an HDF5 file, each at its staggered position; a snapshot is such a file.
 //
-// What the file does not hold stays as the other options made it. With a solid fraction it also says which bodies
-// there are: those of `body`, or one per species.
+// Fields that the file lacks keep the values of the other options. A solid fraction also defines the bodies: those of
+// the dataset `body`, or one per species.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -17,17 +17,17 @@ class InitialState {
 public:
   InitialState(const Config &config, const Domain &domain) : config_(&config), domain_(&domain) {}
 
-  // All members are collective. What is wrong with the file is an error of fail_together().
+  // All members are collective. Errors of the file are reported by fail_together().
 
-  /// Opens the file and refuses datasets that nobody reads. Without -initial_state nothing is read at all.
+  /// Opens the file and refuses unknown datasets. Without -initial_state nothing is read.
   PetscErrorCode open();
   PetscErrorCode read_flow(State *state);
   /// Whether the file has the solid fraction or B of a species.
   bool holds(const SpeciesSpec &species) const;
-  /// Fraction, B and labels of one species; `places`: the bodies as placed, replaced by those of the file, labels
-  /// `first_label` and following.
+  /// Reads fraction, B and labels of one species. `places`: the positions of its bodies, replaced by those of the file;
+  /// labels begin at `first_label`.
   PetscErrorCode read_phase(const SpeciesSpec &species, int first_label, Phase *phase, Places *places);
-  /// Whether any bodies came from the file: then their centres in `places` are just some cell of theirs.
+  /// Whether any bodies came from the file: their centres in `places` are then an arbitrary cell of each.
   bool has_bodies() const { return has_bodies_; }
 
 private:

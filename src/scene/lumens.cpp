@@ -17,7 +17,7 @@ bool flat(const Config &config) { return config.grid.cells[2] == 1; }
 
 std::string number(double value, int digits = 4) { return print("%.*g", digits, value); }
 
-// Volume per time that is given on an inflow side: least and largest.
+// Smallest and largest prescribed volume per time of an inflow boundary.
 std::array<double, 2> given_flow(const Config &config, int d, int high) {
   const bool mean_of_open = !config.openings[d][high].velocity.empty();
   const double area = area_of_side(config, d) * (mean_of_open ? config.open_parts[d][high].share : 1);
@@ -26,7 +26,7 @@ std::array<double, 2> given_flow(const Config &config, int d, int high) {
   return range;
 }
 
-// What comes in through all inflow sides leaves through the only open side; nothing is known of several ones.
+// A single open boundary carries the sum of all inflow; with several the split is unknown.
 bool flow_through(const Config &config, int d, int high, std::array<double, 2> *range) {
   if (config.sides[d][high].kind == SideKind::inflow) {
     *range = given_flow(config, d, high);

@@ -19,7 +19,7 @@ namespace {
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(dimension_of(config)).size()); }
 
-/// Doubles per cell of a phase: fraction, label and what it remembers; of the staggered method again at the time of
+/// Doubles per cell of a phase: fraction, label and deformation; with the staggered method a second copy at the time of
 /// the output.
 double phase_fields(const Config &config, bool carries_tensor) {
   return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
@@ -100,6 +100,8 @@ double fields(const Config &config) {
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
   if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
+  if (contrast.exists() && !rigid && method.viscous == ViscousScheme::rkl)  // ImplicitViscosity
+    sum += 5 * dimension + 2 + (dimension == 2 ? 1 : 0.4);
   if (Scheme::expects_pressure(method, contrast, travels)) sum += 1;  // pressure before
   return sum;
 }

@@ -1,4 +1,4 @@
-// How much memory a run needs and how much there is: looked at before anything is allocated.
+// Memory that a run needs and memory of the machine, compared before anything is allocated.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -8,7 +8,7 @@ namespace eulastic {
 
 /// Estimate of the bytes in fields of the largest of `parts` ranks.
 double bytes_per_rank(const Config &config, const Int3 &parts);
-/// Of all bodies that lie in boxes of their own, of all ranks; bytes_per_rank() counts a share of them.
+/// Estimate of the bytes of all bodies in boxes, of all ranks; bytes_per_rank() counts a share of them.
 double bytes_in_boxes(const Config &config);
 
 /// Bytes of physical memory of this machine.

@@ -37,7 +37,8 @@ std::string fill(const Config &config, std::size_t s, const CellWindow &cells, V
   return {};
 }
 
-// The plane of cells beside a side, x before y before z: what is open of each, and how wide the lumen is there.
+// The plane of cells beside a boundary, x before y before z: the open part of each cell and the width of the lumen
+// there.
 class SideCells {
 public:
   SideCells(const Config &config, int d, bool high) : config_(config), d_(d) {
@@ -49,7 +50,7 @@ public:
     open_.assign(std::size_t(count(0)) * count(1), 1);
   }
 
-  // What is wrong with a file. `known`: not where bodies come from -initial_state.
+  // Error of a file. `known`: false if bodies come from -initial_state.
   std::string subtract_rigid(bool *known) {
     const CellWindow cells(config_.grid, window_.begin, window_.size);
     const Int3 &n = window_.size;
@@ -97,7 +98,7 @@ public:
 private:
   int count(int which) const { return window_.size[along_[which]]; }
   bool wraps(int which) const { return config_.grid.boundary[along_[which]] == Boundary::periodic; }
-  // Whether the lumen goes on beyond the end of the plane as its mirror image does.
+  // Whether the lumen continues beyond the end of the plane as its mirror image.
   bool mirrors(int which, int high) const { return config_.sides[along_[which]][high].kind != SideKind::wall; }
 
   // Finds for every cell the length, in cells, of the open piece of its line; keeps the shorter one of both directions.
@@ -129,7 +130,7 @@ private:
     }
   }
 
-  // All open cells that hang together with one of them by their faces.
+  // All open cells that are connected with one of them through faces.
   template <class Visit>
   void for_lumen(std::size_t first, std::vector<bool> *seen, Visit visit) const {
     const int n[2] = {count(0), count(1)};
@@ -162,8 +163,7 @@ private:
   std::vector<double> open_, chords_, widths_;
 };
 
-// A side is closed where it has no cell of which more than a half is open, or none where the profile says that
-// anything comes in.
+// A boundary is closed if no cell is more than half open, or none of those where the profile is not 0.
 bool is_closed(const Config &config, const SideCells &cells, int d, int high) {
   const auto &profile = config.sides[d][high].profile;
   const bool shaped = config.openings[d][high].from_file() && profile && !profile->empty();
@@ -184,7 +184,7 @@ std::string check_slabs(const Config &config) {
   return {};
 }
 
-// Where flow enters it must leave.
+// Inflow must be able to leave.
 std::string check_way(const Config &config, const std::array<std::array<bool, 2>, 3> &closed) {
   std::string inlet, outlet, covered;
   bool way_out = false;

@@ -1,4 +1,4 @@
-// What rigid bodies leave open of the sides that volume crosses.
+// Parts of inflow and open boundaries that rigid bodies leave open.
 #pragma once
 
 #include "scene/config.hpp"
@@ -7,11 +7,11 @@
 
 namespace eulastic {
 
-/// Measures Config::open_parts. Returns one line on what cannot run, or nothing: a rigid slab that fills the box, an
-/// inflow side that is closed, flow that comes in and has no way out. Collective.
+/// Measures Config::open_parts. Returns an error of one line, or nothing; errors are a rigid slab that fills the box, a
+/// closed inflow boundary, and an inflow that cannot leave the box. Collective.
 std::string measure_open_parts(Config *config);
 
-/// visit(d, high) of every side that volume crosses.
+/// Calls visit(d, high) for every inflow or open boundary.
 template <class Visit>
 void for_crossed_sides(const Config &config, Visit visit) {
   for (int d = 0; d < 3; ++d)

@@ -94,7 +94,7 @@ std::size_t cells_of_side(const Config &config, int d) {
   return cells;
 }
 
-// Makes the mean 1; returns what it was.
+// Scales a profile to the mean 1; returns its former mean.
 double make_mean_one(SideProfile *profile) {
   double sum = 0;
   for (const double value : *profile) sum += value;
@@ -177,8 +177,8 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   return {};
 }
 
-std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
-  const double length = config.openings[d][high].feeder, h = config.grid.length[d] / config.grid.cells[d];
+std::string resolve_inlet_generator(const Config &config, int d, int high, Side *side) {
+  const double length = config.openings[d][high].generator_length, h = config.grid.length[d] / config.grid.cells[d];
   constexpr int least = 8, left = 8;  // cells
   if (length == 0) return {};
   const std::string name = "-boundary_" + side_name(d, high) + "_generator_length: ";
@@ -191,11 +191,12 @@ std::string resolve_feeder(const Config &config, int d, int high, Side *side) {
            to_text(cells * h);
   if (!config.species.empty() && !config.body_series)
     return name + "bodies that enter must be labelled; accepted: -body_series true";
-  side->feeder = static_cast<int>(cells);
+  side->generator_cells = static_cast<int>(cells);
   return {};
 }
 
-// A capacity that is 0, or drained by nothing, holds no pressure of its own: the limits of small ones.
+// Without a capacitance, or without a resistance in parallel to it, the Windkessel has no pressure of its own: the
+// limit of small values.
 std::string resolve_load(const OpeningSpec &spec, const std::string &name, OutletLoad *load) {
   const auto &[first, capacity, second] = spec.windkessel;
   const bool holds = capacity > 0 && second > 0;
@@ -222,7 +223,7 @@ std::string resolve_openings(Config *config) {
       side.kind = bounded ? config->boundary.kind(d, high) : SideKind::wall;
       config->grid.open[d][high] = bounded && is_open(side.kind);
       if (side.kind == SideKind::inflow)
-        for (const auto resolve : {resolve_inflow, resolve_feeder})
+        for (const auto resolve : {resolve_inflow, resolve_inlet_generator})
           if (std::string wrong = resolve(*config, d, high, &side); !wrong.empty()) return wrong;
       if (side.kind == SideKind::wall)
         if (std::string wrong = resolve_wall(*config, d, high, &side); !wrong.empty()) return wrong;
@@ -239,8 +240,8 @@ std::string resolve_openings(Config *config) {
   return opens(config->sides) ? std::string() : check_inflow_balance(*config);
 }
 
-// What comes in through a side: nothing through rigid bodies, and where it is developed the steady flow along a pipe of
-// that section, -lap u = 1 on the open cells of the side with u = 0 on walls and surfaces.
+// The profile of the inflow: 0 in rigid bodies; a developed one is the steady flow along a pipe of that section, -lap u
+// = 1 on the open cells of the boundary with u = 0 on walls and surfaces.
 
 namespace {
 
@@ -253,7 +254,8 @@ struct SidePlane {
   explicit SidePlane(int d) : a(d == 0 ? 1 : 0), b(d == 2 ? 1 : 2) {}
 };
 
-// What cell (i, j) sees beyond its side `high` in direction e: another cell, or a wall, where u is odd, or neither.
+// The neighbour of cell (i, j) beyond its face `high` in direction e: another cell, or a wall, where u is odd, or
+// neither.
 struct Beyond {
   bool cell = false, wall = false;
   int index = 0;
@@ -268,8 +270,8 @@ Beyond beyond(const Config &config, int e, int i, bool high) {
   return {false, kind == SideKind::wall || kind == SideKind::inflow, 0};
 }
 
-// Cells of a side that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a regular
-// one.
+// Cells of a boundary that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a
+// regular one.
 struct OpenCells {
   static constexpr int values = 5;
   std::vector<double> all;
@@ -317,7 +319,7 @@ PetscErrorCode find_open_cells(const Config &config, const Domain &domain, const
   PetscFunctionReturn(0);
 }
 
-// The part of a side that no rigid body covers, from the solid fractions of the cells beside it. Collective.
+// The share of a boundary that no rigid body covers, from the solid fractions of the cells beside it. Collective.
 PetscErrorCode measure_open_part(const Domain &domain, const std::vector<Phase> &phases, int d, bool high,
                                  double *part) {
   PetscFunctionBeginUser;
@@ -427,7 +429,7 @@ PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const 
                  ": rigid bodies cover all of this inflow boundary; accepted: a boundary that is partly open";
         PetscFunctionReturn(0);
       }
-      // A flow rate is that of the whole side, a velocity the mean over its open part.
+      // A flow rate applies to the whole boundary, a velocity is the mean over its open part.
       double part = 1;
       if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(domain, phases, d, high, &part));
       for (double &value : profile) value *= part * double(profile.size()) / sum;

@@ -1,4 +1,4 @@
-// From what the user says of inflow and pressure sides to Config::sides.
+// Makes Config::sides from the options of the boundaries.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -8,14 +8,14 @@
 
 namespace eulastic {
 
-/// Kinds, courses and profiles of all sides, but developed ones; reads tables. Empty, or one line that says what is
-/// wrong.
+/// Sets the kinds, values over time and profiles of all boundaries, except developed profiles; reads tables. Returns an
+/// error of one line, or nothing.
 std::string resolve_openings(Config *config);
-/// Profiles of inflow sides: 0 where rigid bodies (or null) cover them. The mean over the whole side is 1 where a flow
-/// rate is given; where a velocity is given, the mean over the part that the rigid bodies among `phases` leave open
-/// is 1. Developed ones: the shape of the steady flow along the side, from one Poisson problem on its plane, to
-/// round-off; uniform where nothing holds the fluid. Every rank solves it. Collective; `wrong`: one line, or left
-/// empty.
+/// Sets the profiles of inflow boundaries, which are 0 where rigid bodies (or null) cover them. For a flow rate the
+/// mean over the whole boundary is 1; for a velocity the mean over the part that the rigid bodies among `phases` leave
+/// open is 1. A developed profile has the shape of the steady flow along the boundary, from a Poisson problem on its
+/// plane that every rank solves to round-off; it is uniform without walls. Collective; `wrong`: an error of one line,
+/// or unchanged.
 PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const RigidFaces *rigid,
                               const std::vector<Phase> &phases, BoxSides *sides, std::string *wrong);
 

@@ -44,7 +44,7 @@ std::string describe(const Config &config, const Overlap &first, long count) {
   const auto volume = [&](const SpeciesSpec &spec) {
     return spec.shape == Shape::voxels ? std::numeric_limits<double>::infinity() : volume_in_box(spec, config.grid);
   };
-  const bool moves_two = !two.material().attached && two.shape != Shape::voxels, of_one = volume(one) < volume(two);
+  const bool moves_two = !two.material().anchored && two.shape != Shape::voxels, of_one = volume(one) < volume(two);
   return print(
              "%ld bodies overlap as placed; first body %d (%s) and body %d (%s), which share %s of at least %.3g, "
              "%.3g %% of body %d; ",
@@ -74,7 +74,7 @@ PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, const Cell
     for (std::size_t s = 0; s < config.species.size(); ++s) {
       const SpeciesSpec &spec = config.species[s];
       if (spec.shape == Shape::voxels || spec.placement == Placement::random) continue;
-      if (spec.material().attached && solid.material().attached) continue;
+      if (spec.material().anchored && solid.material().anchored) continue;
       add_shared(spec, near[s], config.grid, window, fraction, &shared[s]);
     }
   };

@@ -40,7 +40,7 @@ public:
       if ((places.everywhere && !on_rank_0) || phase_work(config_.species[s].material(), false) == 0) continue;
       const Surface surface(config_.species[s], domain_.dimension());
       const Shape shape = config_.species[s].shape;
-      if (is_attached(shape) || shape == Shape::cylinder)
+      if (is_anchored(shape) || shape == Shape::cylinder)
         add_walls(s, surface);
       else
         add_bodies(s, surface);

@@ -1,4 +1,4 @@
-// How evenly a run begins: what -check_only says of the work of ranks, by the algorithm that shares out the bodies.
+// Predicts the load balance at the start of a run for -check_only, by the algorithm that assigns bodies to ranks.
 #pragma once
 
 #include "base/petsc.hpp"

@@ -1,7 +1,7 @@
 #include "scene/rigid_paths.hpp"
 
 #include "io/option_values.hpp"
-#include "openings/feeders.hpp"
+#include "openings/inlet_generators.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@
 namespace eulastic {
 namespace {
 
-constexpr int free_cells = 2;       // between a body and a side
-constexpr double most_looks = 1e7;  // at pairs of bodies
+constexpr int free_cells = 2;         // between a body and a side
+constexpr double most_samples = 1e7;  // at pairs of bodies
 
 int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
 
-// How far a body has gone along d.
+// Displacement of a body along d.
 double shift(const SpeciesSpec &spec, int d, double time) {
   return spec.slides(d) ? 0 : spec.motion.velocity[d] * spec.motion.of_velocity.integral(time);
 }
@@ -33,16 +33,16 @@ Interval reach(const Oscillation &factor, double end) {
   return {middle - amplitude, middle + amplitude};
 }
 
-// How far it reaches from its centre along d, however far it has turned.
+// Its largest extent from its centre along d at any angle that it reaches.
 double largest_extent(const Config &config, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place,
                       int d) {
-  const int looks = spec.turns(dimension_of(config)) ? 360 : 0;  // over a turn at most: within 4e-5 of it
+  const int samples = spec.turns(dimension_of(config)) ? 360 : 0;  // over a turn at most: within 4e-5 of it
   const Interval way = reach(spec.motion.of_rotation, config.time.end);
   const Real3 &w = spec.motion.angular_velocity;
   const double once = 2 * M_PI / std::hypot(w[0], w[1], w[2]), high = std::min(way.high, way.low + once);
   double extent = 0;
-  for (int n = 0; n <= looks; ++n) {
-    const double gone = looks > 0 ? way.low + (high - way.low) * n / looks : 0;
+  for (int n = 0; n <= samples; ++n) {
+    const double gone = samples > 0 ? way.low + (high - way.low) * n / samples : 0;
     const Rotation R = rotation(turned(place.orientation, {w[0] * gone, w[1] * gone, w[2] * gone}));
     extent = std::max(extent, surface.support(R[d]));
   }
@@ -73,7 +73,7 @@ std::string check_path(const Config &config, const SpeciesSpec &spec, const Surf
          to_text(length - margin) + ", two cells from the boundaries";
 }
 
-// What is between two bodies at a time; infinite of shapes of which it is not known here.
+// Distance of two bodies at a time; infinite for shapes without a formula here.
 double gap_between(const Config &config, const SpeciesSpec &one, const BodyPlace &at, const SpeciesSpec &two,
                    const BodyPlace &place, double time) {
   const int dimension = dimension_of(config);
@@ -90,7 +90,8 @@ double gap_between(const Config &config, const SpeciesSpec &one, const BodyPlace
   return two.shape == Shape::tube ? two.radius - one.radius - distance : distance - one.radius - two.radius;
 }
 
-// Of a species that travels, with all others. What is not found here is found when it happens (rigid/rigid_bodies.hpp).
+// Collisions of a moving species with all others. Collisions that are missed here stop the run when they happen
+// (rigid/rigid_bodies.hpp).
 std::string check_meetings(const Config &config, std::size_t which) {
   const SpeciesSpec &one = config.species[which];
   double spacing = HUGE_VAL;
@@ -103,11 +104,11 @@ std::string check_meetings(const Config &config, std::size_t which) {
     for (const SpeciesSpec *spec : {&one, &two})
       for (const double V : spec->motion.velocity) speed += std::fabs(V);
     const double pairs = double(config.places[which].count) * double(config.places[s].count);
-    const double looks = std::min(4 * speed * config.time.end / spacing, most_looks / std::max(1.0, pairs));
+    const double samples = std::min(4 * speed * config.time.end / spacing, most_samples / std::max(1.0, pairs));
     for (const BodyPlace &at : config.places[which].known)
       for (const BodyPlace &place : config.places[s].known)
-        for (long n = 0; n <= static_cast<long>(looks) + 1; ++n) {
-          const double time = config.time.end * double(n) / (static_cast<double>(static_cast<long>(looks)) + 1);
+        for (long n = 0; n <= static_cast<long>(samples) + 1; ++n) {
+          const double time = config.time.end * double(n) / (static_cast<double>(static_cast<long>(samples)) + 1);
           if (gap_between(config, one, at, two, place, time) < spacing)
             return "-" + one.name + "_velocity: carries a body to one of " + two.name + " at t = " + to_text(time) +
                    "; accepted: a path with a cell or more between them";
@@ -134,7 +135,7 @@ std::string check_paths(const Config &config) {
     if (!config.method.staggered()) return option + "needs -method fast; accepted here: along itself, or 0,0,0";
     if (config.method.acm_of_the_paper())
       return option + "needs an increment of the pressure; accepted here: -acm_iterations_max > 1, or along itself";
-    if (has_feeders(config.sides))
+    if (has_inlet_generators(config.sides))
       return option + "cannot be combined with an inlet generator; accepted: without -boundary_SIDE_generator_length";
     if (spec.shape == Shape::voxels) continue;
     const Surface surface(spec, dimension);

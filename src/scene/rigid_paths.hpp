@@ -1,4 +1,4 @@
-// Where rigid bodies travel during a run.
+// Checks the paths of moving rigid bodies.
 #pragma once
 
 #include "bodies/shapes.hpp"
@@ -6,10 +6,11 @@
 
 namespace eulastic {
 
-/// Of species that travel: empty, or one line: what they do not go with, or a path that comes too near a side of the
-/// box, at any time of an oscillation or until -time_end. Bodies from files: check_path(), when their surface is known.
+/// Returns nothing, or an error of one line about a moving species: an option that it cannot be combined with, or a
+/// path that comes too close to a boundary of the box, at any time of an oscillation or until -time_end. Bodies from
+/// files: check_path(), when their surface is known.
 std::string check_paths(const Config &config);
-/// Of one body.
+/// The same for one body.
 std::string check_path(const Config &config, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place);
 
 }  // namespace eulastic

@@ -17,8 +17,8 @@
 namespace eulastic {
 namespace {
 
-// Bodies of a file begin at some cell of theirs: moves the references to their centres, in the box.
-PetscErrorCode settle_bodies(const Domain &domain, const State &state, BodyTracker *bodies) {
+// Bodies from a file start with an arbitrary cell as reference: moves the references to their centres, in the box.
+PetscErrorCode set_reference_centres(const Domain &domain, const State &state, BodyTracker *bodies) {
   PetscFunctionBeginUser;
   for (int turn = 0; turn < 2; ++turn) PetscCall(bodies->follow(domain, state.phases));
   bodies->wrap(domain);
@@ -87,7 +87,7 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
     if (!config.body_series) state.phases.back().label = Field();
   }
   PetscCall(solver->set_rigid(std::move(rigid)));
-  if (config.body_series && file.has_bodies()) PetscCall(settle_bodies(domain, state, &solver->bodies()));
+  if (config.body_series && file.has_bodies()) PetscCall(set_reference_centres(domain, state, &solver->bodies()));
   for (std::size_t s = 0; s < config.species.size(); ++s)
     if (state.phases[s].boxed && file.holds(config.species[s]))
       PetscCall(solver->boxed().take_from_grid(static_cast<int>(s)));
@@ -108,7 +108,7 @@ PetscErrorCode build_scene(const Config &config, const Domain &domain, Solver *s
   solver->set_profiles(sides);
   solver->set_adhesion(config.adhesion);
   PetscCall(solver->prepare());
-  *reason = solver->crowded();
+  *reason = solver->stop_reason();
   PetscFunctionReturn(0);
 }
 

@@ -8,8 +8,8 @@
 
 namespace eulastic {
 
-/// Makes the solver on `grid` and sets its initial velocity and bodies. A species that cannot be placed makes
-/// `reason` one line.
+/// Makes the solver on `grid` and sets its initial velocity and bodies. `reason`: an error of one line if a species
+/// cannot be placed.
 PetscErrorCode build_scene(const Config &config, const Domain &domain, Solver *solver, std::string *reason);
 
 }  // namespace eulastic

@@ -17,7 +17,7 @@ void add_attachment_warnings(const Config &config, std::vector<std::string> *war
   for (int d = 0; d < 3; ++d) spacing[d] = config.grid.length[d] / config.grid.cells[d];
   for (const SpeciesSpec &spec : config.species) {
     const Material material = spec.material();
-    if (!material.attached || damps_short_waves(spacing, dimension, config.fluid, material)) continue;
+    if (!material.anchored || damps_short_waves(spacing, dimension, config.fluid, material)) continue;
     warnings->push_back(
         print("%s is anchored and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
               "viscosity %g, so that its strain at the surface is of first order only, as for a free body; use a "
@@ -44,13 +44,13 @@ void add_lag_warnings(const Config &config, std::vector<std::string> *warnings) 
   }
 }
 
-// Where the interface stays sharp one expects that bodies stay separate.
+// With a sharp interface users expect that bodies stay separate.
 void add_merging_warnings(const Config &config, std::vector<std::string> *warnings) {
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &spec = config.species[s];
     const std::string needed = config.why_no_boxes(spec);
     if (needed.empty() || spec.contact || config.method.interface != InterfaceScheme::plic) continue;
-    if (spec.law == Law::rigid || spec.material().attached || config.places[s].count < 2) continue;
+    if (spec.law == Law::rigid || spec.material().anchored || config.places[s].count < 2) continue;
     warnings->push_back("bodies of " + spec.name + " merge where they touch: to stay separate they need " + needed +
                         "; -" + spec.name + "_contact merge accepts it without this warning");
   }

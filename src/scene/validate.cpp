@@ -75,7 +75,7 @@ std::string check_walls(const Config &config) {
   return {};
 }
 
-// Whether volume crosses a side.
+// Whether a boundary is inflow, pressure or outflow.
 bool crossed(const Config &config, int d, int high) {
   return config.grid.open[d][high] || config.boundary.is(SideKind::inflow, d, high);
 }
@@ -109,7 +109,7 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
                     law = "-" + spec.name + "_law: " + name + " needs ";
   if (!config.method.staggered() || config.method.interface != InterfaceScheme::plic)
     return law + "-method fast and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
-  if (is_attached(spec.shape) || spec.shape == Shape::cylinder || spec.attached.value_or(false))
+  if (is_anchored(spec.shape) || spec.shape == Shape::cylinder || spec.anchored.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
   if (!config.initial_state.empty() || spec.shape == Shape::state)
     return law + "an initial shape, which -initial_state does not give";
@@ -121,7 +121,7 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
-// A slab that goes along its axis leaves the fluid on both sides of it where that is, or is carried round.
+// A slab that moves along its axis must not compress the fluid on its two sides.
 bool piston_has_way_out(const Config &config, const SpeciesSpec &slab) {
   const DomainShape &grid = config.grid;
   for (int e = 0; e < 3; ++e)
@@ -131,7 +131,7 @@ bool piston_has_way_out(const Config &config, const SpeciesSpec &slab) {
   return grid.boundary[slab.axis] == Boundary::periodic || (grid.open[slab.axis][0] && grid.open[slab.axis][1]);
 }
 
-// Fluid must be able to pass around it; where it goes: check_paths().
+// Fluid must be able to pass around it; check_paths() checks its path.
 std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   if (spec.law != Law::rigid) return {};
   const std::string name = "-" + spec.name + "_";
@@ -210,7 +210,7 @@ std::string check_species(const Config &config, const SpeciesSpec &spec) {
   if (random && (spec.number >= 0) == (spec.hematocrit >= 0))
     return "-" + spec.name + "_placement: random needs either -" + spec.name + "_count or -" + spec.name +
            "_hematocrit";
-  if (random && (spec.shape == Shape::cylinder || is_attached(spec.shape)))
+  if (random && (spec.shape == Shape::cylinder || is_anchored(spec.shape)))
     return "-" + spec.name + "_placement: random needs finite bodies; accepted: sphere, biconcave, ellipsoid";
   if (spec.placement == Placement::list && !is_file(spec.positions_file))
     return "-" + spec.name + "_positions: " + spec.positions_file + " is not a file";
@@ -227,7 +227,7 @@ bool is_random(const SpeciesSpec &spec) { return spec.placement == Placement::ra
 
 // Walls and posts, which others are compared with wherever they are, and whose loads every rank knows.
 bool is_known_everywhere(const SpeciesSpec &spec) {
-  return spec.bears_load() || spec.material().attached || spec.shape == Shape::cylinder;
+  return spec.bears_load() || spec.material().anchored || spec.shape == Shape::cylinder;
 }
 
 std::string place_species(std::size_t which, const SolidBodies &solids, const KeptBodies &kept, Config *config) {
@@ -342,7 +342,7 @@ std::string validate(Config *whole) {
     return wrong;
   if (const std::string wrong = place_all(solids, whole); !wrong.empty()) return wrong;
   if (const std::string wrong = measure_open_parts(whole); !wrong.empty()) return wrong;
-  if (const std::string wrong = check_adhesion(config); !wrong.empty()) return wrong;
+  if (const std::string wrong = check_adhesion(whole); !wrong.empty()) return wrong;
   return check_paths(config);
 }
 

@@ -1,12 +1,12 @@
-// What no single option can know: whether the options fit together.
+// Checks whether the options are consistent with each other.
 #pragma once
 
 #include "scene/config.hpp"
 
 namespace eulastic {
 
-/// One line that names the option and what is accepted, or nothing. Looks for the files that are to be read, and places
-/// the bodies.
+/// Returns an error of one line that names the option and what is accepted, or nothing. Checks that input files exist,
+/// and places the bodies.
 std::string validate(Config *config);
 
 }  // namespace eulastic

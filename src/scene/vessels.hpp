@@ -1,4 +1,4 @@
-// What is measured of vessels: the flow through their lumen, and what it does to those that are elastic.
+// Measures of vessels: the flow through their lumen, and its loads on elastic vessels.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -13,7 +13,7 @@ namespace eulastic {
 struct VesselFlow {
   std::string species;
   double flow_rate = 0;           ///< volume along its axis per time; 2-D: per depth
-  double apparent_viscosity = 0;  ///< dynamic, by Poiseuille's law for what drives the flow; 0 where nothing flows
+  double apparent_viscosity = 0;  ///< dynamic, by Poiseuille's law from the driving pressure; 0 without flow
 };
 
 /// Those of all tubes, constricted ones too, whose axis lies in the box; `bulk`: mean velocity of the box; `sides`: as

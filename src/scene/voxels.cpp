@@ -20,9 +20,9 @@ namespace {
 // All members are collective.
 class VoxelBody {
 public:
-  std::string open(const SpeciesSpec &spec, const DomainShape &grid) {
-    path_ = spec.voxels.path;
-    const std::string wrong = on_rank_0([&] { return open_locally(spec, grid); });
+  std::string open(const VoxelSpec &voxels, const DomainShape &grid) {
+    path_ = voxels.path;
+    const std::string wrong = on_rank_0([&] { return open_locally(voxels, grid); });
     share(&triangles_);
     share(&box_);
     return wrong;
@@ -44,8 +44,7 @@ public:
   }
 
 private:
-  std::string open_locally(const SpeciesSpec &spec, const DomainShape &grid) {
-    const VoxelSpec &voxels = spec.voxels;
+  std::string open_locally(const VoxelSpec &voxels, const DomainShape &grid) {
     VolumeFormat format;
     std::string file, dataset, wrong = find_volume(voxels.path, &format, &file, &dataset);
     if (!wrong.empty()) return wrong;
@@ -112,9 +111,10 @@ private:
   std::vector<Triangle> triangles_;  // none: a volume
 };
 
-std::string about(const SpeciesSpec &spec, const std::string &wrong) {
-  return wrong.empty() ? wrong : "-" + spec.name + "_voxels: " + wrong;
+std::string about(const std::string &option, const std::string &wrong) {
+  return wrong.empty() ? wrong : option + ": " + wrong;
 }
+std::string option_of(const SpeciesSpec &spec) { return "-" + spec.name + "_voxels"; }
 
 constexpr int most_cells = 1 << 24;  // in memory at a time
 
@@ -126,8 +126,8 @@ bool on_any_rank(bool here) {
 
 }  // namespace
 
-std::string read_voxels(const SpeciesSpec &spec, const DomainShape &grid, const CellWindow &cells,
-                        const VisitLayers &visit) {
+std::string read_cells(const VoxelSpec &voxels, const std::string &option, const DomainShape &grid,
+                       const CellWindow &cells, const VisitLayers &visit) {
   const Int3 &n = cells.size;
   const int end = cells.begin[2] + n[2];
   const int step =
@@ -138,14 +138,19 @@ std::string read_voxels(const SpeciesSpec &spec, const DomainShape &grid, const 
     phi.resize(std::size_t(n[0]) * n[1] * window.size[2]);
     const View fraction{phi.data(), n[0], std::ptrdiff_t(n[0]) * n[1]};
     VoxelBody body;  // anew: files may have to be read from the front
-    std::string wrong = body.open(spec, grid);
+    std::string wrong = body.open(voxels, grid);
     if (wrong.empty()) wrong = body.fill(window, fraction);
-    if (on_any_rank(!wrong.empty())) return about(spec, wrong);
-    if (spec.voxels.invert)
+    if (on_any_rank(!wrong.empty())) return about(option, wrong);
+    if (voxels.invert)
       for (double &q : phi) q = 1 - q;
     if (window.size[2] > 0) visit(window, fraction);
   }
   return {};
+}
+
+std::string read_voxels(const SpeciesSpec &spec, const DomainShape &grid, const CellWindow &cells,
+                        const VisitLayers &visit) {
+  return read_cells(spec.voxels, option_of(spec), grid, cells, visit);
 }
 
 namespace {
@@ -169,8 +174,9 @@ std::string measure(const SpeciesSpec &spec, DomainShape grid, SolidMask *mask, 
   for (int d = 0; d < (n[2] == 1 ? 2 : 3); ++d) sum *= grid.length[d] / n[d];
   *volume = sum;
   if (!wrong.empty()) return wrong;
-  if (sum == 0) return about(spec, spec.voxels.path + " has nothing solid in the box");
-  if (all && spec.law == Law::rigid) return about(spec, spec.voxels.path + " fills all of the box and leaves no fluid");
+  if (sum == 0) return about(option_of(spec), spec.voxels.path + " has nothing solid in the box");
+  if (all && spec.law == Law::rigid)
+    return about(option_of(spec), spec.voxels.path + " fills all of the box and leaves no fluid");
   return {};
 }
 
@@ -194,8 +200,8 @@ PetscErrorCode fill_voxels(const Domain &domain, const SpeciesSpec &spec, int la
   VerbScope scope(Verb::bodies);
   const View fraction = phase->fraction[0], name = phase->label[0];
   VoxelBody body;
-  PetscCall(fail_together(domain.comm(), about(spec, body.open(spec, domain.domain_shape()))));
-  PetscCall(fail_together(domain.comm(), about(spec, body.fill(domain, fraction))));
+  PetscCall(fail_together(domain.comm(), about(option_of(spec), body.open(spec.voxels, domain.domain_shape()))));
+  PetscCall(fail_together(domain.comm(), about(option_of(spec), body.fill(domain, fraction))));
   for_points(domain.rows(), [&](int i, int j, int k) {
     double &phi = fraction(i, j, k);
     if (spec.voxels.invert) phi = 1 - phi;

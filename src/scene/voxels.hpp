@@ -14,8 +14,12 @@ namespace eulastic {
 
 using VisitLayers = std::function<void(const CellWindow &, ConstView fraction)>;
 
-/// phi of a species of shape voxels in some cells of the box, some layers at a time. Collective, each rank with its
-/// cells; ends on all ranks when something is wrong on one. Returns one line on what is wrong here, or nothing.
+/// Solid fractions that a file has of some cells of the box, some layers at a time. Collective, each rank with its
+/// cells; ends on all ranks when something is wrong on one. Returns one line on what is wrong here, which names the
+/// option, or nothing.
+std::string read_cells(const VoxelSpec &voxels, const std::string &option, const DomainShape &grid,
+                       const CellWindow &cells, const VisitLayers &visit);
+/// The same of a species of shape voxels.
 std::string read_voxels(const SpeciesSpec &spec, const DomainShape &grid, const CellWindow &cells,
                         const VisitLayers &visit);
 

@@ -24,8 +24,8 @@ public:
     for (std::size_t s = 0; s < config.species.size(); ++s) {
       const SpeciesSpec &spec = config.species[s];
       if (spec.law != Law::rigid || spec.travels(dimension_)) continue;
-      if (is_attached(spec.shape)) attached_.push_back(spec);
-      if (is_attached(spec.shape) || spec.shape == Shape::voxels) continue;
+      if (is_anchored(spec.shape)) attached_.push_back(spec);
+      if (is_anchored(spec.shape) || spec.shape == Shape::voxels) continue;
       shapes_.emplace_back(spec, dimension_, film_, config.grid.length[spec.axis]);
       for (const BodyPlace &place : config.places[s].known)
         posts_.add({&shapes_.back(), place.centre, rotation(place.orientation)});

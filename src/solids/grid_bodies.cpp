@@ -34,7 +34,7 @@ EvolveRule evolve_rule(const Flow &flow, const Material &material) {
   const Domain &domain = flow.domain;
   const bool reset = flow.spec.exterior == SolidExterior::identity;
   const bool linear =
-      material.attached && damps_short_waves(domain.spacing(), domain.dimension(), flow.fluid, material);
+      material.anchored && damps_short_waves(domain.spacing(), domain.dimension(), flow.fluid, material);
   EvolveRule rule = reset ? reset_below_one_per_cent : linear ? evolve_where_full : evolve_above_half;
   // The stress is that of the start of the step, and vanishes at centres where B is I, unless the law reads B of the
   // edges around.
@@ -116,7 +116,7 @@ PetscErrorCode GridBodies::settle(Phase *phase) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridBodies::forget_unresolved(const std::vector<double> &trace) {
+PetscErrorCode GridBodies::reset_unresolved(const std::vector<double> &trace) {
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
     Phase &phase = flow_.now.phases[p];

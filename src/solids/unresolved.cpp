@@ -49,7 +49,7 @@ bool may_be_unresolved(double trace, int dimension) {
   return (dimension == 2 ? mean * mean : mean * mean * mean) > 0.99 * largest_determinant;  // margin for round-off
 }
 
-long forget_unresolved(const Box &box, Phase &phase) {
+long reset_unresolved(const Box &box, Phase &phase) {
   VerbScope scope(Verb::left_cauchy_green);
   const Layout &layout = box.layout();
   const Int3 n = box.cells();
@@ -105,9 +105,9 @@ long forget_unresolved(const Box &box, Phase &phase) {
   return found;
 }
 
-PetscErrorCode forget_unresolved(const Domain &domain, Phase &phase, long *count) {
+PetscErrorCode reset_unresolved(const Domain &domain, Phase &phase, long *count) {
   PetscFunctionBeginUser;
-  const long found = forget_unresolved(static_cast<const Box &>(domain), phase);
+  const long found = reset_unresolved(static_cast<const Box &>(domain), phase);
   PetscCallMPI(MPI_Allreduce(&found, count, 1, MPI_LONG, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }

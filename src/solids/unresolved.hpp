@@ -20,14 +20,14 @@ bool may_be_unresolved(double trace, int dimension);
 /// and B_ab = 0 on the edges around; full neighbours that then exceed their limit get such a factor. Changes owned
 /// points only and does not repeat the extrapolation. Returns the number of such centres in the box. Reads two ghosts
 /// of B and one of phi.
-long forget_unresolved(const Box &box, Phase &phase);
+long reset_unresolved(const Box &box, Phase &phase);
 /// Does the same on all ranks; *count is the total. Collective.
-PetscErrorCode forget_unresolved(const Domain &domain, Phase &phase, long *count);
+PetscErrorCode reset_unresolved(const Domain &domain, Phase &phase, long *count);
 
 /// Does the same, if a largest trace of `trace` makes it necessary.
 inline PetscErrorCode find_and_forget(const Domain &box, double trace, Phase &phase, long *count) {
   *count = 0;
-  return may_be_unresolved(trace, box.dimension()) ? forget_unresolved(box, phase, count) : 0;
+  return may_be_unresolved(trace, box.dimension()) ? reset_unresolved(box, phase, count) : 0;
 }
 
 }  // namespace eulastic

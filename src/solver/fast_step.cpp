@@ -7,6 +7,7 @@
 #include "solids/elastic_force.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace eulastic {
 
@@ -15,6 +16,12 @@ PetscErrorCode FastStep::start() {
   const int dim = flow_.domain.dimension();
   PetscFunctionBeginUser;
   PetscCall(Scheme::start());
+  if (viscosity_ && !flow_.rigid && flow_.spec.viscous == ViscousScheme::rkl) {
+    const ViscosityContrast range = contrast({});
+    PetscCall(implicit_.create(flow_.domain, flow_.spec.sides,
+                               std::sqrt(range.least * range.most) / flow_.fluid.density,
+                               flow_.spec.viscous_tolerance));
+  }
   if (now.phases.empty() || !flow_.spec.linear_force()) PetscFunctionReturn(0);
   flow_.velocity_star = {};
   Field memory(flow_.domain, 3 * dim);
@@ -120,6 +127,12 @@ PetscErrorCode FastStep::advance_viscous_stages(const Fluid &fluid, const Moment
   }
   viscous_step.rigid = flow_.rigid;
   viscous_step.means = flow_.rigid_means;
+  if (implicit_) {
+    PetscCall(implicit_.step(flow_.exchange, viscous_step, viscous.rate, flow_.slope ? &viscous.slope : nullptr,
+                             flow_.velocity_star));
+    stages_ += implicit_.products();
+    PetscFunctionReturn(0);
+  }
   PetscCall(super_time_step(domain, flow_.exchange, viscous_step, viscous, flow_.velocity_star));
   stages_ += stages;
   PetscFunctionReturn(0);

@@ -2,6 +2,7 @@
 // docs/method.md, sections 2 to 8 and 16.
 #pragma once
 
+#include "flow/implicit_viscosity.hpp"
 #include "solver/scheme.hpp"
 
 namespace eulastic {
@@ -10,6 +11,7 @@ class FastStep final : public Scheme {
 public:
   using Scheme::Scheme;
   PetscErrorCode start() override;
+  std::size_t bytes() const override { return Scheme::bytes() + implicit_.bytes(); }
   PetscErrorCode step(double dt, const Look &in_middle, const Look &with_pressure) override;
 
 private:
@@ -18,6 +20,8 @@ private:
   PetscErrorCode predict(double dt);
   PetscErrorCode advance_viscous_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope);
   PressureRotation rotation() const;
+
+  ImplicitViscosity implicit_;  ///< where viscosities differ, unless there are rigid bodies; else empty
 };
 
 }  // namespace eulastic

@@ -27,7 +27,7 @@ public:
   /// (method `fast` only); `with_pressure` with the velocity of the start, in Flow::velocity_star, and the pressure at
   /// the end of the projection.
   virtual PetscErrorCode step(double dt, const Look &in_middle, const Look &with_pressure) = 0;
-  std::size_t bytes() const;
+  virtual std::size_t bytes() const;
 
   TimeStepLimits limits(const FlowExtremes &extremes) const;
   /// Kinematic viscosities (flow/local_viscosity.hpp) for the given phases; null if all bodies have the viscosity of

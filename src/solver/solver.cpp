@@ -8,7 +8,7 @@
 #include "membranes/membrane_transport.hpp"
 #include "membranes/stretch_force.hpp"
 #include "openings/bodies_at_sides.hpp"
-#include "openings/feeders.hpp"
+#include "openings/inlet_generators.hpp"
 #include "openings/loaded_outlets.hpp"
 #include "parts/state.hpp"
 #include "rigid/rigid_flow.hpp"
@@ -79,20 +79,21 @@ PetscErrorCode Solver::make_parts() {
     owned_parts_.push_back(std::move(part));
   };
   PetscFunctionBeginUser;
-  std::unique_ptr<Feeders> feeders;
-  if (has_feeders(sides)) feeders = std::make_unique<Feeders>(flow, boxed_.get());
-  if (feeders) PetscCall(feeders->create());
+  std::unique_ptr<InletGenerators> generators;
+  if (has_inlet_generators(sides)) generators = std::make_unique<InletGenerators>(flow, boxed_.get());
+  if (generators) PetscCall(generators->create());
   if (!phases.empty()) add(std::make_unique<GridBodies>(flow));
   if (boxed_->exist()) flow->parts.push_back(boxed_.get());
   if (rigid_) flow->parts.push_back(rigid_.get());
-  if (!phases.empty() && volume_crosses(sides)) add(std::make_unique<BodiesAtSides>(flow, boxed_.get(), feeders.get()));
+  if (!phases.empty() && volume_crosses(sides))
+    add(std::make_unique<BodiesAtSides>(flow, boxed_.get(), generators.get()));
   if (SurfaceTension::exists(phases)) add(std::make_unique<SurfaceTension>(flow));
   if (MembraneTransport::exists(phases)) add(std::make_unique<MembraneTransport>(flow));
   if (SpeciesForces::exist(phases)) add(std::make_unique<SpeciesForces>(flow));
   if (StretchForces::exist(phases)) add(std::make_unique<StretchForces>(flow));
   if (adhesion_) add(std::make_unique<Adhesion>(flow, boxed_.get(), *adhesion_));
   if (LoadedOutlets::exist(sides)) add(std::make_unique<LoadedOutlets>(flow, projection_.get()));
-  if (feeders) add(std::move(feeders));
+  if (generators) add(std::move(generators));
   PetscFunctionReturn(0);
 }
 
@@ -141,16 +142,16 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::forget_unresolved(const FlowExtremes &extremes) {
+PetscErrorCode Solver::reset_unresolved(const FlowExtremes &extremes) {
   PetscFunctionBeginUser;
-  if (auto *grid = part<GridBodies>()) PetscCall(grid->forget_unresolved(extremes.trace));
-  PetscCall(boxed_->forget_unresolved(extremes.trace));
+  if (auto *grid = part<GridBodies>()) PetscCall(grid->reset_unresolved(extremes.trace));
+  PetscCall(boxed_->reset_unresolved(extremes.trace));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_pressure) {
-  const auto see_middle = [&]() -> PetscErrorCode { return in_middle ? looks_->behind(in_middle) : 0; };
-  const auto see_pressure = [&] {
+  const auto record_middle = [&]() -> PetscErrorCode { return in_middle ? looks_->behind(in_middle) : 0; };
+  const auto record_pressure = [&] {
     Flow &flow = *flow_;
     PetscFunctionBeginUser;
     boxed_->forget_looks();
@@ -160,7 +161,7 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
     flow.now.velocity.swap(flow.velocity_star);
     PetscFunctionReturn(0);
   };
-  return scheme_->step(dt, see_middle, see_pressure);
+  return scheme_->step(dt, record_middle, record_pressure);
 }
 
 PetscErrorCode Solver::viscosity_now(const Field **viscosity) {

@@ -65,7 +65,7 @@ public:
   TimeStepLimits limits(const FlowExtremes &extremes) const;
   /// Repairs B where the grid does not resolve it. This is part of the method: call it before a step, with the result
   /// of measure(). Collective.
-  PetscErrorCode forget_unresolved(const FlowExtremes &extremes);
+  PetscErrorCode reset_unresolved(const FlowExtremes &extremes);
   /// Advances the flow by dt. `in_middle` is called with the velocity of the start and, with the staggered method, the
   /// phases of the middle; averages of its measures and those of looks().behind(), weighted by the lengths of this step
   /// and the last, are measures at the time of that velocity, to second order. `with_pressure` is called later, with
@@ -90,7 +90,7 @@ public:
   bool is_behind() const { return flow_->is_behind(); }
   /// One line if rigid bodies overlap that must not, or if a body that cannot leave has reached a boundary that volume
   /// crosses; else empty.
-  const std::string &crowded() const { return flow_->crowded; }
+  const std::string &stop_reason() const { return flow_->stop_reason; }
   /// Viscous stages and pressure iterations since the start of the run.
   long stages() const;
   long sweeps() const;

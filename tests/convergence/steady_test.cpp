@@ -77,7 +77,7 @@ std::array<double, 3> layers(int cells, const Material &material) {
   spec.fluid.body_force.force = {g, 0, 0};
   EXPECT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
   scene.add_phase(0, [=](double, double y, double) { return y < solid ? 1.0 : 0.0; }).material = material;
-  scene.solver.state().phases[0].material.attached = true;
+  scene.solver.state().phases[0].material.anchored = true;
   EXPECT_EQ(scene.solver.prepare(), 0);
   EXPECT_EQ(scene.run(60, (material.c3 > 0 ? 450 : 150) * cells), 0);  // below the elastic limit
   const State &state = scene.solver.state();

@@ -84,7 +84,7 @@ TEST(BodyOwners, WriteOneFile) {
   char shared[1000] = "";
   std::snprintf(shared, sizeof shared, "%s", path.c_str());
   ASSERT_EQ(MPI_Bcast(shared, sizeof shared, MPI_CHAR, 0, run_communicator()), 0);
-  BodiesFile file(run_communicator(), shared, true, true);
+  BodiesFile file(run_communicator(), shared, {true, true, false});
   constexpr int rows = 23, before = 7, after = 9, change = 11;
   const auto value = [](int row, int body, int n) { return 1000. * row + 100 * body + n; };
   for (int row = 0; row < rows; ++row) {

@@ -1,4 +1,4 @@
-// -method fast: the same bits on any ranks, with moving and attached bodies, walls, two phases, both pressure solvers.
+// -method fast: the same bits on any ranks, with moving and anchored bodies, walls, two phases, both pressure solvers.
 #include "base/rank_zero.hpp"
 #include "output/saved_state.hpp"
 #include "support/on_one_rank.hpp"
@@ -62,7 +62,7 @@ TEST(FastStep, SameBitsOnAnyRanks) {
     }
 }
 
-// Hash of a box of walls around a rod of fluid in an attached solid, with rows so few that ghosts reach beyond a
+// Hash of a box of walls around a rod of fluid in an anchored solid, with rows so few that ghosts reach beyond a
 // neighbour's wall; the layers around B end there.
 std::uint64_t thin_hash(MPI_Comm comm, const Int3 &processors) {
   Scene scene;

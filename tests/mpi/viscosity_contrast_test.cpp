@@ -6,6 +6,7 @@
 #include "diagnostics/wall_shear_stress.hpp"
 #include "flow/viscous_stress.hpp"
 #include "output/saved_state.hpp"
+#include "support/cell_block.hpp"
 #include "support/on_one_rank.hpp"
 #include "support/scene.hpp"
 
@@ -18,48 +19,8 @@ using namespace eulastic::test;
 
 namespace {
 
-Function wild(double a) {
-  return [a](double x, double y, double z) { return std::sin(a + 17 * x + 23 * y * y + 5 * z + a * x * y); };
-}
-
-// Random flow between sides of several kinds, and a phase of another viscosity everywhere.
-struct CellBlock {
-  Domain domain;
-  BoxSides sides{};
-  Fluid fluid;
-  std::vector<Phase> phases{1};
-  Field velocity;
-  LocalViscosity viscosity;
-
-  CellBlock(MPI_Comm comm, bool flat, const std::array<bool, 3> &bounded, double contrast) {
-    GridSpec spec;
-    spec.cells = {7, 13, flat ? 1 : 9};
-    spec.length = {1, 2, 1.5};
-    for (int d = 0; d < (flat ? 2 : 3); ++d) spec.boundary[d] = bounded[d] ? Boundary::wall : Boundary::periodic;
-    EXPECT_EQ(domain.create(comm, spec), 0);
-    const int dim = domain.dimension();
-    sides[0][0].motion.velocity = {0, 0.7, flat ? 0 : -0.3};
-    sides[1][0].kind = SideKind::symmetry;
-    sides[1][1].motion.velocity = {-0.4, 0, flat ? 0 : 0.5};
-    sides[2][1].motion.velocity = {0.2, 0.6, 0};
-    fluid.density = 1.3;
-    fluid.viscosity = 0.2;
-    phases[0].material.viscosity = contrast * fluid.viscosity;
-    velocity = Field(domain, dim);
-    viscosity = LocalViscosity(domain);
-    for (int c = 0; c < dim; ++c) set(domain, velocity[c], at_face[c], wild(c + 1));
-    GhostExchange exchange(domain);
-    EXPECT_EQ(exchange.update_ghosts(velocity, 2), 0);
-    fill_wall_ghosts_velocity(domain, sides, 0, velocity, 2);
-    Phase &phase = phases[0];
-    phase.fraction = Field(domain, 1);
-    phase.tensor.field = tensor_at_rest(domain);
-    set(domain, phase.fraction[0], at_centre, [](double x, double y, double z) { return std::fabs(wild(4)(x, y, z)); });
-    EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
-    EXPECT_EQ(exchange.update_ghosts(phase.fraction, 2), 0);
-    fill_wall_ghosts_even(domain, at_centre, phase.fraction[0], 2);
-    EXPECT_EQ(compute_viscosity(domain, fluid, sides, phases, &viscosity), 0);
-  }
+struct MeasuredBlock : CellBlock {
+  using CellBlock::CellBlock;
 
   // Sum of v . div tau over all faces but those on sides, where v = 0.
   double power_of_force() {
@@ -95,7 +56,7 @@ TEST(ViscosityContrast, PowerOfTheForceIsThatOfTheWallsLessTheDissipation) {
     for (const double contrast : {0.01, 5.0, 100.0})
       for (const std::array<bool, 3> &bounded :
            {std::array<bool, 3>{true, true, true}, {false, true, false}, {true, false, true}, {false, false, false}}) {
-        CellBlock box(run_communicator(), flat, bounded, contrast);
+        MeasuredBlock box(run_communicator(), flat, bounded, contrast);
         const double dissipation = box.flow().viscous_dissipation;
         const double walls = box.rates().wall_power;
         EXPECT_GT(dissipation, 0.1);
@@ -108,7 +69,7 @@ TEST(ViscosityContrast, MeasuresHaveTheBitsOfOneRank) {
   for (const bool flat : {false, true}) {
     double values[2][3];
     for (int alone = 0; alone < 2; ++alone) {
-      const CellBlock box(alone ? PETSC_COMM_SELF : run_communicator(), flat, {true, true, false}, 5);
+      const MeasuredBlock box(alone ? PETSC_COMM_SELF : run_communicator(), flat, {true, true, false}, 5);
       double largest = 0;
       for (const WallStress &wall : box.stresses())
         for (const std::vector<double> &values_of_wall : wall.components)

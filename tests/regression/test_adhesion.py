@@ -11,6 +11,7 @@ import subprocess
 import sys
 import unittest
 
+import h5py
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -18,8 +19,9 @@ sys.dont_write_bytecode = True
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests/support")]
 from program import BINARY  # noqa: E402
 from scene_case import SceneCase  # noqa: E402
+from eulastic import Run  # noqa: E402
 
-FILES = "adhesion.csv", "adhesion_bonds.csv", "adhesion_events.csv"
+FILES = "series.csv", "adhesion_bonds.csv", "adhesion_events.csv"
 BOX = ("-grid_cells 24,16,16 -grid_length 12,8,8 -boundary_y wall -fluid_viscosity 1.2 -species cell -cell_shape sphere -cell_radius 1.4 "
        "-cell_shear_modulus .05 -cell_placement list").split()
 SHEAR = "-initial_velocity couette -boundary_ymax_velocity .02,0,0".split()
@@ -65,6 +67,12 @@ class Adhesion(SceneCase):
         whole = {float(row["time"]): row for row in events}
         later = rows_of(self.room / "rest" / FILES[2])
         self.assertTrue(later and all(whole[row["time"]] is not None for row in later))
+        row = rows_of(self.room / "on1" / FILES[0])[-1]
+        self.assertEqual((row["bonds_formed"], row["bonds_broken"]), tuple(sum(event["formed"] == value for event in events) for value in (1, 0)))
+        self.assertEqual(row["bonds"], row["bonds_formed"] - row["bonds_broken"])
+        bodies = Run(self.room / "on1").bodies
+        for d, axis in enumerate("xyz"):
+            self.assertAlmostEqual(bodies.bond_force[-1, :, d].sum(), row[f"bond_force_{axis}"], delta=1e-15)
         bonds = rows_of(self.room / "on1" / FILES[1])
         last = [row for row in bonds if row["time"] == bonds[-1]["time"]]
         self.assertEqual(len(last), len(events) - 2 * sum(not event["formed"] for event in events))
@@ -86,6 +94,9 @@ class Adhesion(SceneCase):
             for run, of in found.items():
                 if not run.endswith("half"):
                     self.assertEqual(of.summary["state_hash"], found[f"{name}1"].summary["state_hash"], run)
+            bodies = Run(self.room / f"{name}1").bodies
+            self.assertEqual(bodies.bonds[-1, 0], bodies.bonds[-1, 1:].sum(), "the vessel bears the other ends")
+            numpy.testing.assert_allclose(bodies.bond_force[-1, 0], -bodies.bond_force[-1, 1:].sum(axis=0), atol=1e-14)
             last = rows_of(self.room / f"{name}1" / FILES[1])
             self.assertGreater(len(last), 20)
             self.assertEqual({row["body"] for row in last}, {2, 3})  # the third cell is beside the region
@@ -95,6 +106,77 @@ class Adhesion(SceneCase):
         done = subprocess.run([BINARY, *refused], cwd=self.room, capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("-adhesion_cell_vessel_reach: 1.1 is more than 2 cells", done.stderr)
+
+    def test_bodies_that_change_their_rank(self):
+        """Receptors go with them, in shear that carries six discs around a periodic box, with bonds to walls and to each other."""
+        file = self.room / "discs.csv"
+        file.write_text("x,y,z\n" + "".join(f"{1.2 + 2 * n},{1.2 + 1.6 * (n % 2)},0\n" for n in range(6)))
+        words = [*("-grid_cells 48,16,1 -grid_length 12,4,1 -boundary_y wall -boundary_ymax_velocity .2,0,0 -initial_velocity couette "
+                   "-fluid_viscosity 1.2 -species disc -disc_shape sphere -disc_radius .9 -disc_shear_modulus .2 -disc_placement list "
+                   "-adhesion disc-wall,disc-disc -time_step .25 -time_end 100 -series_interval 10 -disc_positions").split(), file,
+                 *pair("disc_wall", reach=.4, rate_off=.05, reactive_compliance=30), *pair("disc_disc", reach=.8, rate_off=.02)]
+        found = self.run_together({**{f"on{n}": ([*words, "-time_steps_max", 230], {"ranks": n}) for n in (1, 2, 4)},
+                                   "half": ([*words, "-time_steps_max", 140], {"ranks": 3})})
+        found |= self.run_together({"rest": ([*words, "-time_steps_max", 230, "-restart", self.room / "half"], {"ranks": 2})})
+        for name, run in found.items():
+            if name != "half":
+                self.assertEqual(run.summary["state_hash"], found["on1"].summary["state_hash"], name)
+        events = rows_of(self.room / "on1" / FILES[2])
+        self.assertEqual({event["pair"] for event in events}, {0, 1})
+        self.assertGreater(sum(not event["formed"] for event in events), 10)
+
+    def test_bodies_of_an_inlet_generator(self):
+        """A body that comes in has receptors and binds; one that leaves takes its bonds with it. The same on any ranks and after a
+        restart."""
+        words = [*("-grid_cells 64,16,1 -grid_length 8,2,1 -boundary_y wall -boundary_xmin inflow -boundary_xmax outflow "
+                   "-boundary_xmin_velocity 1 -boundary_xmin_profile developed -initial_velocity poiseuille -initial_velocity_amplitude 1.5 "
+                   "-boundary_xmin_generator_length 2.5 -fluid_viscosity .5 -species disc -disc_shape sphere -disc_radius .35 -disc_centre 1.2,.5,0 "
+                   "-disc_shear_modulus 4 -interface_scheme plic -adhesion disc-wall -adhesion_disc_wall_region 4,0,0,8,2,1 -time_end 12 "
+                   "-time_step .01 -series_interval .2").split(),
+                 *pair("disc_wall", density=20, reach=.4, rate_on=4, rate_off=4, bond_stiffness=.001)]
+        found = self.run_together({**{f"in{n}": ([*words], {"ranks": n}) for n in (1, 3)},
+                                   "inhalf": ([*words, "-time_steps_max", 700], {"ranks": 2})})
+        found |= self.run_together({"inrest": ([*words, "-restart", self.room / "inhalf"], {"ranks": 3})})
+        for name in "in3", "inrest":
+            self.assertEqual(found[name].summary["state_hash"], found["in1"].summary["state_hash"], name)
+        bodies = Run(self.room / "in1").bodies
+        self.assertGreater(len(bodies.id), 1)
+        self.assertTrue((numpy.nan_to_num(bodies.bonds).max(axis=0)[:2] > 2).all(), "two of them have had bonds")
+        gone = bodies.volume == 0
+        self.assertTrue(gone[-1, 0], "the first one has left")
+        self.assertEqual(numpy.nan_to_num(bodies.bonds[gone]).max(), 0)
+
+    def test_regions_from_files(self):
+        """Bonds where the file has cells: a disc on the lower wall. Wrong files are refused in one line."""
+        x, z = numpy.meshgrid((numpy.arange(24) + .5) / 2, (numpy.arange(16) + .5) / 2, indexing="xy")
+        mask = numpy.zeros((16, 16, 24), "u1")
+        mask[:, 0, :] = numpy.hypot(x - 4, z - 4) < 2
+        with h5py.File(self.room / "patch.h5", "w") as file:
+            file["patch"] = mask
+            file["none"] = 0 * mask
+            file["upper"] = mask * 0
+            file["upper"][:, 8, :] = 1
+        words = self.scene([(3, 1.7, 4), (9, 1.7, 4)], *SHEAR, "-adhesion", "cell-wall", *pair("cell_wall", rate_on=.2), "-time_end", 30,
+                           "-snapshot_interval", 30)
+        given = ["-adhesion_cell_wall_region_file", self.room / "patch.h5:patch"]
+        found = self.run_together({f"patch{n}": ([*words, *given], {"ranks": n}) for n in (1, 3)})
+        self.assertEqual(found["patch1"].summary["state_hash"], found["patch3"].summary["state_hash"])
+        bonds = rows_of(self.room / "patch1" / FILES[1])
+        self.assertGreater(len(bonds), 5)
+        for row in bonds:
+            self.assertTrue(mask[int(2 * row["to_z"]), 0, int(2 * row["to_x"])], row)
+            self.assertEqual(row["to_y"], 0)
+        narrow = self.run_together({"narrow": ([*words, *given, "-adhesion_cell_wall_region", "0,0,0,3.2,8,8"], {"ranks": 1})})
+        self.assertTrue(narrow)
+        self.assertLessEqual(max(row["to_x"] for row in rows_of(self.room / "narrow" / FILES[1])), 3.2)
+        for name, says in (("patch.h5:none", ["no cell"]), ("patch.h5:upper", ["no wall"]), ("patch.h5:missing", ["missing"]),
+                           ("nothing.h5", ["nothing.h5"])):
+            done = subprocess.run([BINARY, *map(str, words), "-adhesion_cell_wall_region_file", self.room / name], cwd=self.room,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, (name, done.stdout, done.stderr))
+            self.assertRegex(done.stderr, r"\Aeulastic: error: -adhesion_cell_wall_region_file: [^\n]+\n\Z")
+            for piece in says:
+                self.assertIn(piece, done.stderr)
 
     def test_files_of_a_run_that_goes_on(self):
         words = self.scene([(3, 1.7, 4)], *SHEAR, "-adhesion", "cell-wall", *pair("cell_wall"), "-time_end", 60, "-series_interval", 3,
@@ -138,13 +220,16 @@ class Adhesion(SceneCase):
                                                                                        bond_stiffness=.004),
                            "-time_end", 150, "-series_interval", 10)
         run = self.run_together({"pair": (words, {"ranks": 2})})["pair"]
-        forces = rows_of(self.room / "pair" / FILES[0])
-        last = [row for row in forces if row["time"] == forces[-1]["time"]]
-        self.assertGreater(last[0]["bonds"], 3)
-        self.assertEqual(last[0]["bonds"], last[1]["bonds"])
+        bodies = Run(self.room / "pair").bodies
+        first, second = bodies.bonds[-1]
+        self.assertGreater(first, 3)
+        self.assertEqual(first, second)
+        numpy.testing.assert_allclose(bodies.bond_force[:, 0], -bodies.bond_force[:, 1], atol=1e-15)
+        self.assertGreater(bodies.bond_force[2, 0, 0], 0)
+        total = rows_of(self.room / "pair" / FILES[0])[-1]
+        self.assertEqual(total["bonds"], first)
         for d in "xyz":
-            self.assertAlmostEqual(last[0][f"force_{d}"], -last[1][f"force_{d}"], delta=1e-15)
-        self.assertGreater(forces[2]["force_x"], 0)
+            self.assertAlmostEqual(total[f"bond_force_{d}"], 0, delta=1e-15)
         left, right = (body["centroid"][0] for body in run.summary["bodies"])
         self.assertAlmostEqual(left + right, 12, delta=2e-3)
         self.assertLess(right - left, 3.4 - .05)

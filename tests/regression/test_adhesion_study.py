@@ -42,15 +42,17 @@ class AdhesionStudy(WithFolder):
         self.check_bonds(self.folder / "tether_4")
 
     def check_bonds(self, directory):
-        """The rows of all three tables agree with each other; without the bonds the picture is another one."""
+        """All tables agree with each other; without the bonds the picture is another one."""
         run = Run(directory)
         pull, _ = load("studies/adhesion/adhesion_study").pull(run)
-        last = run.adhesion[-1]
+        last = run.series[-1]
         self.assertEqual(len(run.snapshots[-1].bonds()), last.bonds)
-        numpy.testing.assert_allclose(pull, [last.force_x, last.force_y, last.force_z], rtol=1e-9, atol=1e-9)
+        self.assertEqual(run.bodies.bonds[-1, 0], last.bonds)
+        numpy.testing.assert_allclose(pull, [last.bond_force_x, last.bond_force_y, last.bond_force_z], rtol=1e-9, atol=1e-9)
+        numpy.testing.assert_allclose(pull, run.bodies.bond_force[-1, 0], rtol=1e-9, atol=1e-9)
         formed, broken = ((run.adhesion_events.formed == value).sum() for value in (1, 0))
+        self.assertEqual((formed, broken), (last.bonds_formed, last.bonds_broken))
         self.assertEqual((formed - broken, broken), (last.bonds, 0))
-        self.assertEqual(len(set(zip(run.adhesion.time, run.adhesion.body))), len(run.adhesion))
         self.assertEqual(len(run.snapshots[0].bonds()), 0)
         copy = self.folder / "without"
         shutil.copytree(directory, copy)

@@ -13,6 +13,8 @@ import sys
 import tempfile
 import unittest
 
+from PIL import Image
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts/lib"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
@@ -220,6 +222,16 @@ class Docs(unittest.TestCase):
             made |= set(re.findall(r"Made with eulastic ([\d.]+) \((?:sources )?(\w[\w-]*)\)", page.read_text()))
         self.assertEqual({version for version, _ in made}, {newest.split()[0]})
         self.assertEqual(len(made), 1, made)
+
+    def test_pictures_are_at_print_size(self):
+        """1,600 pixels wide, or 1,200 for square ones: those of the gallery, and once CHANGELOG.md ends with a release all."""
+        newest = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[-1]
+        pattern = "gallery_*" if newest == "Unreleased" else "*"
+        pictures = [path for path in (ROOT / "docs/images").glob(pattern) if path.suffix != ".svg"]
+        self.assertGreater(len(pictures), 30)
+        for path in pictures:
+            with Image.open(path) as picture:
+                self.assertGreaterEqual(picture.width, 1200, path.name)
 
     def test_steps_of_evidence(self):
         """A step is done once, and again when the sources have changed; what it makes lies in docs/."""

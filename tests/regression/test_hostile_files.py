@@ -80,6 +80,16 @@ class Numbers(Restart):
                              (8, -1.), (8, 1e6)):
             self.refuse_changed([*BOXES, "-time_steps_max", 6], path, "bodies_in_boxes", index, value)
 
+    def test_of_receptors_in_boxes(self):
+        case = [*BOXES, *("-adhesion cell-wall -adhesion_cell_wall_density 9 -adhesion_cell_wall_reach .5 -adhesion_cell_wall_rate_on 9 "
+                          "-adhesion_cell_wall_rate_off 1 -adhesion_cell_wall_bond_stiffness .01").split()]
+        self.run_case("run", *case, "-time_steps_max", 4)
+        case += ["-time_steps_max", 6]
+        for value in (-1., .5, numpy.nan, 1e12):
+            self.refuse_changed(case, self.checkpoints()[0], "receptors_in_boxes", 0, value)
+        # The last receptor: its place, its partner, the receptor of that, the pair.
+        for part, value in ((0, numpy.nan), (3, 1e3), (3, -2.), (4, -1.), (5, 1.), (8, numpy.inf)):
+            self.refuse_changed(case, self.checkpoints()[0], "values_in_boxes", part - 10, value, says="receptors_in_boxes")
 
     def test_of_markers_in_boxes(self):
         case = [*BOXES[:BOXES.index("-cell_shear_modulus")], *BOXES[BOXES.index("-cell_shear_modulus") + 2:],

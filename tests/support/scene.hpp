@@ -52,11 +52,11 @@ struct Scene {
   }
 
   /// Adds a phase with the given solid fraction and B = I.
-  Phase &add_phase(double shear_modulus, const Function &fraction, bool attached = false) {
+  Phase &add_phase(double shear_modulus, const Function &fraction, bool anchored = false) {
     Phase phase;
     phase.species = "solid";
     phase.material.shear_modulus = shear_modulus;
-    phase.material.attached = attached;
+    phase.material.anchored = anchored;
     phase.empty(domain, false);
     set(domain, phase.fraction[0], at_centre, fraction);
     solver.state().phases.push_back(std::move(phase));

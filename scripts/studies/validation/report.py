@@ -91,12 +91,13 @@ def draw_case(axis, case, results):
         mine, reference = case.curve(runs if case.whole_curve else runs[key])
         colour, dashes, mark = style.METHODS[setting.label]
         if labels.count(setting.label) > 1:  # grids of one method: a colour each
-            colour, dashes = style.COLOURS[n % len(style.COLOURS)], style.DASHES[n % len(style.DASHES)]
+            free = [c for c in style.COLOURS if c not in {style.METHODS[label][0] for label in labels if label != setting.label}]
+            colour, dashes = free[n % len(free)], style.DASHES[n % len(style.DASHES)]
         at = "" if case.whole_curve else f", {name_of(key)}"
         axis.plot(*mine, color=colour, ls=dashes, marker=mark if len(mine[0]) < 10 else "", ms=4, label=setting.label + at)
         if reference is not None and not any(same_curve(known, reference) for known in drawn):
             drawn.append(reference)
-            draw_reference(axis, reference, "reference" + (f", {setting.label}" if len(drawn) > 1 else ""))
+            draw_reference(axis, reference, "reference")
     axis.set(xlabel=case.axes[0], ylabel=textwrap.fill(case.axes[1], 30), **case.scales)
     if axis.get_xscale() == "log":
         axis.set_xticks(axis.lines[0].get_xdata(), [f"{x:g}" for x in axis.lines[0].get_xdata()])
@@ -105,9 +106,10 @@ def draw_case(axis, case, results):
 
 
 def legend_entries(axis):
-    """Handles and labels, the references last."""
-    entries = sorted(zip(*axis.get_legend_handles_labels()), key=lambda entry: entry[1].startswith("reference"))
-    return dict(zip(("handles", "labels"), zip(*entries)))
+    """Handles and labels, each label once, the reference last."""
+    entries = dict(zip(*reversed(axis.get_legend_handles_labels())))
+    labels = sorted(entries, key=lambda label: label == "reference")
+    return {"handles": [entries[label] for label in labels], "labels": labels}
 
 
 def one_legend_will_do(axes):

@@ -48,7 +48,7 @@ double least_level(const Config &config) {
   double least = 1e9;
   for (std::size_t s = 0; s < config.species.size(); ++s)
     for (std::size_t b = 0; b < config.places[s].known.size(); ++b) {
-      if (is_attached(config.species[s].shape)) continue;
+      if (is_anchored(config.species[s].shape)) continue;
       for (const Real3 &x : surface_points(config.species[s], config.places[s].known[b], dimension))
         for (std::size_t t = 0; t < config.species.size(); ++t)
           for (std::size_t c = 0; c < config.places[t].known.size(); ++c) {
@@ -57,10 +57,10 @@ double least_level(const Config &config) {
             Real3 r, y{};
             for (int d = 0; d < 3; ++d) {
               r[d] = x[d] - other.centre[d];
-              if (config.grid.boundary[d] == Boundary::periodic && !is_attached(config.species[t].shape))
+              if (config.grid.boundary[d] == Boundary::periodic && !is_anchored(config.species[t].shape))
                 r[d] -= config.grid.length[d] * std::round(r[d] / config.grid.length[d]);
             }
-            if (r[0] * r[0] + r[1] * r[1] + r[2] * r[2] > 100 && !is_attached(config.species[t].shape)) continue;
+            if (r[0] * r[0] + r[1] * r[1] + r[2] * r[2] > 100 && !is_anchored(config.species[t].shape)) continue;
             const Rotation q = rotation(other.orientation);
             for (int d = 0; d < 3; ++d)
               for (int e = 0; e < 3; ++e) y[d] += q[e][d] * r[e];

@@ -35,7 +35,7 @@ SpeciesSpec constricted(int axis, double radius, const Real3 &centre, double thr
   return spec;
 }
 
-// Volume of the phase; checks that it is attached and named.
+// Volume of the phase; checks that it is anchored and named.
 double volume(const SpeciesSpec &spec, const GridSpec &grid_spec) {
   Places places;
   EXPECT_EQ(place_bodies(spec, grid_spec, &places), "");
@@ -44,7 +44,7 @@ double volume(const SpeciesSpec &spec, const GridSpec &grid_spec) {
   EXPECT_EQ(domain.create(PETSC_COMM_SELF, grid_spec), 0);
   Phase phase;
   EXPECT_EQ(fill_phase(domain, spec, places, 1, &phase), 0);
-  EXPECT_TRUE(phase.material.attached);
+  EXPECT_TRUE(phase.material.anchored);
   double sum = 0;
   for (const Segment &row : domain.rows())
     for (int i = row.i_begin; i < row.i_end; ++i) sum += phase.fraction[0](i, row.j, row.k);

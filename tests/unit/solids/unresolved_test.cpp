@@ -43,7 +43,7 @@ struct Body {
   long forget(const EvolveRule &rule = half) {
     long count = -1;
     phase.tensor.rule = rule;
-    EXPECT_EQ(forget_unresolved(domain, phase, &count), 0);
+    EXPECT_EQ(reset_unresolved(domain, phase, &count), 0);
     return count;
   }
 };

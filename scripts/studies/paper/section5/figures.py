@@ -34,7 +34,7 @@ def snapshots(runs, work, path):
     blues = matplotlib.colors.LinearSegmentedColormap.from_list("u", BLUES)
     colours = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(*speed), blues)
     figure.colorbar(colours, cax=figure.add_axes([0.88, 0.25, 0.018, 0.5]), label="u in the middle plane (µm/µs)")
-    save(figure, path, colours=256)
+    save(figure, path)
 
 
 def platelets(runs, path):

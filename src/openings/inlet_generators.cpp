@@ -1,4 +1,4 @@
-#include "openings/feeders.hpp"
+#include "openings/inlet_generators.hpp"
 
 #include "base/deliver.hpp"
 #include "base/exact_sum.hpp"
@@ -11,29 +11,29 @@
 
 namespace eulastic {
 
-Feeders::~Feeders() {
+InletGenerators::~InletGenerators() {
   for (Stretch &stretch : stretches_) (void)MPI_Comm_free(&stretch.line);
 }
 
-PetscErrorCode Feeders::create() {
+PetscErrorCode InletGenerators::create() {
   const Domain &domain = flow_.domain;
   const BoxSides &sides = flow_.spec.sides;
   PetscFunctionBeginUser;
   const Int3 position = domain.split().position_of(domain.rank());
   for (int d = 0; d < domain.dimension(); ++d)
     for (const int high : {0, 1}) {
-      if (sides[d][high].feeder == 0) continue;
+      if (sides[d][high].generator_cells == 0) continue;
       Int3 first = position;
       first[d] = 0;
       MPI_Comm line;
       PetscCallMPI(MPI_Comm_split(domain.comm(), domain.split().rank_at(first), position[d], &line));
-      stretches_.push_back({d, high, sides[d][high].feeder, line});
+      stretches_.push_back({d, high, sides[d][high].generator_cells, line});
     }
   PetscFunctionReturn(0);
 }
 
 template <class Visit>
-void Feeders::for_cells(const Box &box, const Stretch &stretch, const Visit &visit) {
+void InletGenerators::for_cells(const Box &box, const Stretch &stretch, const Visit &visit) {
   const int d = stretch.d, deep = stretch.cells + beyond, begin = box.layout().begin[d];
   Int3 from{}, to = box.cells();
   if (stretch.high)
@@ -44,7 +44,7 @@ void Feeders::for_cells(const Box &box, const Stretch &stretch, const Visit &vis
 }
 
 // Rigid bodies are the same all along a stretch.
-PetscErrorCode Feeders::check_lumen() const {
+PetscErrorCode InletGenerators::check_lumen() const {
   constexpr double same = 0.05;  // of a solid fraction; surfaces of triangles and voxels are not quite straight
   std::vector<double> change(stretches_.size(), 0);
   PetscFunctionBeginUser;
@@ -62,7 +62,7 @@ PetscErrorCode Feeders::check_lumen() const {
                              flow_.domain.comm()));
   for (std::size_t s = 0; s < stretches_.size(); ++s)
     if (change[s] > same)
-      flow_.crowded =
+      flow_.stop_reason =
           "-boundary_" + side_name(stretches_[s].d, stretches_[s].high != 0) +
           "_generator_length: the lumen changes along the inlet generator; accepted: a stretch with a constant lumen";
   PetscFunctionReturn(0);
@@ -70,7 +70,7 @@ PetscErrorCode Feeders::check_lumen() const {
 
 // Normal velocities on the sides at the end of the step: those at the ends of the stretches, and what the flow rate
 // lacks with the profile of the side.
-PetscErrorCode Feeders::constrain(double dt) {
+PetscErrorCode InletGenerators::constrain(double dt) {
   const double time = flow_.now.time + dt;
   Field &velocity = flow_.velocity_star;
   PetscFunctionBeginUser;
@@ -102,7 +102,7 @@ PetscErrorCode Feeders::constrain(double dt) {
 }
 
 // The same from what is on the sides already.
-PetscErrorCode Feeders::recall() {
+PetscErrorCode InletGenerators::recall() {
   const Field &velocity = flow_.now.velocity;
   PetscFunctionBeginUser;
   for (const Stretch &stretch : stretches_) {
@@ -117,7 +117,7 @@ PetscErrorCode Feeders::recall() {
 
 // visit(stretch, label) for all cells of bodies in stretches, one after the other.
 template <class Visit>
-void Feeders::for_bodies(const Visit &visit) const {
+void InletGenerators::for_bodies(const Visit &visit) const {
   const std::vector<BodyInBox> boxed = boxed_.list();
   for (int s = 0; s < static_cast<int>(stretches_.size()); ++s) {
     for (const BodyInBox &body : boxed) {
@@ -137,7 +137,7 @@ void Feeders::for_bodies(const Visit &visit) const {
   }
 }
 
-PetscErrorCode Feeders::start() {
+PetscErrorCode InletGenerators::start() {
   std::map<int, int> here;
   PetscFunctionBeginUser;
   PetscCall(check_lumen());
@@ -146,7 +146,7 @@ PetscErrorCode Feeders::start() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::set_inside(const std::map<int, int> &here) {
+PetscErrorCode InletGenerators::set_inside(const std::map<int, int> &here) {
   std::vector<int> all;
   PetscFunctionBeginUser;
   for (const auto &[label, stretch] : here) all.insert(all.end(), {label, stretch});
@@ -159,7 +159,7 @@ PetscErrorCode Feeders::set_inside(const std::map<int, int> &here) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Feeders::find_passed(std::vector<int> *labels) const {
+PetscErrorCode InletGenerators::find_passed(std::vector<int> *labels) const {
   std::vector<int> inside;
   PetscFunctionBeginUser;
   labels->clear();
@@ -176,7 +176,7 @@ PetscErrorCode Feeders::find_passed(std::vector<int> *labels) const {
   PetscFunctionReturn(0);
 }
 
-Int3 Feeders::shift_of(int label) const {
+Int3 InletGenerators::shift_of(int label) const {
   const Stretch &stretch = stretches_[inside_.at(label)];
   Int3 shift{};
   shift[stretch.d] = stretch.high ? stretch.cells : -stretch.cells;

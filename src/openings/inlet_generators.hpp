@@ -1,5 +1,5 @@
-// Stretches of the box that feed their inflow sides: what passes their end comes in again, velocity and bodies
-// (docs/method.md, section 20).
+// Inlet generators: stretches of the box beside inflow boundaries; velocity and bodies that pass their end also enter
+// through the boundary (docs/method.md, section 20).
 #pragma once
 
 #include "boxes/boxed_bodies.hpp"
@@ -11,15 +11,16 @@
 
 namespace eulastic {
 
-class Feeders final : public FlowPart {
+class InletGenerators final : public FlowPart {
 public:
-  /// Cells beyond the end of the stretch that a body must have passed, all of it: it comes in as far from the side.
+  /// Cells beyond the end of the stretch that the whole body must have passed; it enters at the same distance from the
+  /// boundary.
   static constexpr int beyond = 2;
 
-  Feeders(Flow *flow, const BoxedBodies *boxed) : flow_(*flow), boxed_(*boxed) {}
-  Feeders(const Feeders &) = delete;
-  Feeders &operator=(const Feeders &) = delete;
-  ~Feeders() override;
+  InletGenerators(Flow *flow, const BoxedBodies *boxed) : flow_(*flow), boxed_(*boxed) {}
+  InletGenerators(const InletGenerators &) = delete;
+  InletGenerators &operator=(const InletGenerators &) = delete;
+  ~InletGenerators() override;
   PetscErrorCode create();
   PetscErrorCode start() override;
   PetscErrorCode recall() override;

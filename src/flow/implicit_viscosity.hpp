@@ -1,0 +1,66 @@
+// An implicit viscous step where viscosity varies: SDIRK2, each of its two systems solved by conjugate gradients,
+// preconditioned by V-cycles of a uniform viscosity (docs/method.md, section 16).
+#pragma once
+
+#include "base/exact_sum.hpp"
+#include "flow/super_time_stepping.hpp"
+#include "pressure/multigrid.hpp"
+
+#include <map>
+
+namespace eulastic {
+
+class ImplicitViscosity {
+public:
+  /// Builds the V-cycles for increments of the velocity, which are 0 on closed boundaries. `viscosity`: of the
+  /// V-cycles, kinematic, between the least and the largest one. `tolerance`: of the residual of each system, relative
+  /// to its right-hand side. Collective.
+  PetscErrorCode create(const Domain &domain, const BoxSides &sides, double viscosity, double tolerance);
+  explicit operator bool() const { return viscosity_ > 0; }
+
+  /// v* = v + W(dt) like super_time_step(), from `step.local`; `step.rigid` must be null. `rate`: M_0, lost. `slope`:
+  /// M_1, or null. Collective.
+  PetscErrorCode step(GhostExchange &exchange, const ViscousStep &step, Field &rate, const Field *slope,
+                      Field &velocity_star);
+  /// How often the last step has evaluated the viscous force.
+  int products() const { return products_; }
+  std::size_t bytes() const;
+
+private:
+  /// The faces of component a in a row whose velocity is not given.
+  struct Faces {
+    int a;
+    Segment row;
+  };
+  /// Sums of squares of the right-hand side and of the residual.
+  struct Size {
+    double right_side, residual;
+  };
+  template <class Work>
+  void for_faces(const Work &work) const;
+  template <int N, class Product>
+  PetscErrorCode sum(const Product &product, double *result);
+  PetscErrorCode sum_of_squares(const Field &field, double *result);
+  void weight_open_faces(double factor, Field &field) const;
+  PetscErrorCode precondition(GhostExchange &exchange);
+  PetscErrorCode multiply(GhostExchange &exchange, const ViscousStep &step, double part);
+  PetscErrorCode add_boundaries(GhostExchange &exchange, const ViscousStep &step, double from, double to, double part,
+                                Field &right_side);
+  PetscErrorCode first_system(GhostExchange &exchange, const ViscousStep &step, double part, Field &rate,
+                              const Field *slope, Size *size);
+  PetscErrorCode second_system(GhostExchange &exchange, const ViscousStep &step, double part, Field &rate,
+                               const Field *slope, Field &solution, Size *size);
+  PetscErrorCode solve(GhostExchange &exchange, const ViscousStep &step, double part, Size size, Field &solution);
+
+  const Domain *domain_ = nullptr;
+  double viscosity_ = 0, tolerance_ = 0;
+  int products_ = 0;
+  std::vector<Faces> faces_;
+  std::map<ZeroSides, Multigrid> cycles_;  ///< of all components with the same boundaries
+  std::array<ZeroSides, 3> boundaries_{};  ///< of every component
+  Field residual_, correction_, product_, direction_, direction_product_;  ///< velocity blocks; ghosts behind sides of
+                                                                           ///< the residual are 0
+  Field cycle_, scratch_;
+};
+
+}  // namespace eulastic
