@@ -4,7 +4,7 @@
 #include "base/deliver.hpp"
 #include "base/events.hpp"
 #include "boxes/receptors.hpp"
-#include "parts/carried_state.hpp"
+#include "parts/state.hpp"
 
 #include <algorithm>
 #include <cmath>

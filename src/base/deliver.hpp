@@ -1,8 +1,9 @@
-// Sends records to the ranks that need them, without knowing who receives from whom.
+// Sends records to the ranks that need them, without knowing who receives from whom, or to all ranks.
 #pragma once
 
-#include "base/mpi_type.hpp"
+#include "base/petsc.hpp"
 
+#include <numeric>
 #include <vector>
 
 namespace eulastic {
@@ -30,6 +31,24 @@ PetscErrorCode deliver(MPI_Comm comm, const std::vector<int> &ranks, std::vector
   PetscCall(PetscSFGatherBegin(sf.get(), record_type.get(), records->data(), arrived.data()));
   PetscCall(PetscSFGatherEnd(sf.get(), record_type.get(), records->data(), arrived.data()));
   records->swap(arrived);
+  PetscFunctionReturn(0);
+}
+
+/// Collective: `records` of all ranks one after the other, on every rank. T: plain numbers or structs of them.
+template <class T>
+PetscErrorCode gather_all(MPI_Comm comm, std::vector<T> *records) {
+  int ranks, count = static_cast<int>(records->size());
+  MpiType one;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  PetscCall(one.create(sizeof(T), MPI_BYTE));
+  std::vector<int> counts(ranks), begins(ranks + 1, 0);
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm));
+  std::partial_sum(counts.begin(), counts.end(), begins.begin() + 1);
+  std::vector<T> all(begins.back());
+  PetscCallMPI(
+      MPI_Allgatherv(records->data(), count, one.get(), all.data(), counts.data(), begins.data(), one.get(), comm));
+  records->swap(all);
   PetscFunctionReturn(0);
 }
 

@@ -8,7 +8,6 @@
 
 #include "base/petsc.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>

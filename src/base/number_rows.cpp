@@ -1,5 +1,7 @@
 #include "base/number_rows.hpp"
 
+#include "base/one_line.hpp"
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -46,21 +48,15 @@ bool is_name(std::string_view item) {
          std::string_view("+-.0123456789").find(item[0]) == std::string_view::npos && !read_number(item, &number);
 }
 
-std::string lower(std::string_view text) {
-  std::string all(text);
-  for (char &c : all) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return all;
-}
-
 std::string name_of(std::string_view item) {
   while (!item.empty() && item.front() == '"') item.remove_prefix(1);
   while (!item.empty() && item.back() == '"') item.remove_suffix(1);
-  return lower(trim(item));
+  return lower_case(std::string(trim(item)));
 }
 
 // Whether a comment begins with the word `name`, regardless of case.
 bool begins_with(std::string_view comment, const std::string &name) {
-  return lower(comment.substr(0, name.size())) == name &&
+  return lower_case(std::string(comment.substr(0, name.size()))) == name &&
          (comment.size() == name.size() || !std::isalpha(static_cast<unsigned char>(comment[name.size()])));
 }
 

@@ -1,5 +1,9 @@
 #include "base/one_line.hpp"
 
+#include <cctype>
+#include <cstdarg>
+#include <cstdio>
+
 namespace eulastic {
 namespace {
 
@@ -18,6 +22,20 @@ std::size_t character_bytes(const std::string &text, std::size_t at) {
 }
 
 }  // namespace
+
+std::string print(const char *format, ...) {
+  char text[1001];
+  va_list list;
+  va_start(list, format);
+  std::vsnprintf(text, sizeof text, format, list);
+  va_end(list);
+  return text;
+}
+
+std::string lower_case(std::string text) {
+  for (char &c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 std::string one_line(std::string text) {
   constexpr std::size_t longest = 1000;

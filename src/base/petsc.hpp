@@ -46,4 +46,27 @@ using DmHandle = Handle<DM, DMDestroy>;
 using VecHandle = Handle<Vec, VecDestroy>;
 using SfHandle = Handle<PetscSF, PetscSFDestroy>;
 
+/// The datatype of `count` contiguous values of another datatype.
+class MpiType {
+public:
+  MpiType() = default;
+  MpiType(const MpiType &) = delete;
+  MpiType &operator=(const MpiType &) = delete;
+  ~MpiType() {
+    if (type_ != MPI_DATATYPE_NULL) (void)MPI_Type_free(&type_);
+  }
+  /// May be called once.
+  PetscErrorCode create(std::size_t count, MPI_Datatype of) {
+    PetscFunctionBeginUser;
+    PetscCallMPI(MPI_Type_contiguous(static_cast<int>(count), of, &type_));
+    PetscCallMPI(MPI_Type_commit(&type_));
+    PetscFunctionReturn(0);
+  }
+  MPI_Datatype get() const { return type_; }
+  explicit operator bool() const { return type_ != MPI_DATATYPE_NULL; }
+
+private:
+  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+};
+
 }  // namespace eulastic

@@ -1,5 +1,7 @@
 #include "base/progress.hpp"
 
+#include "base/one_line.hpp"
+
 #include <unistd.h>
 #include <algorithm>
 #include <cmath>
@@ -11,12 +13,7 @@ namespace {
 std::string duration(double seconds) {
   if (!(seconds < 3.6e8)) return "?";
   const long s = std::lround(seconds);
-  char text[32];
-  if (s >= 3600)
-    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
-  else
-    std::snprintf(text, sizeof text, "%ld:%02ld", s / 60, s % 60);
-  return text;
+  return s >= 3600 ? print("%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60) : print("%ld:%02ld", s / 60, s % 60);
 }
 
 }  // namespace
@@ -45,10 +42,8 @@ double Progress::seconds_left(long step, const Mark &now) const {
 
 std::string Progress::line(double time, long step, double dt, double wall) const {
   const double rate = wall > 0 ? goal_.cells * double(step - goal_.steps_begin) / wall * 1e-6 : 0;
-  char text[160];
-  std::snprintf(text, sizeof text, "%5.1f %%  time %.6g of %.6g  step %ld  dt %.3g  %.3g Mcell/s",
-                100 * fraction(time, step), time, goal_.time_end, step, dt, rate);
-  return text;
+  return eulastic::print("%5.1f %%  time %.6g of %.6g  step %ld  dt %.3g  %.3g Mcell/s", 100 * fraction(time, step),
+                         time, goal_.time_end, step, dt, rate);
 }
 
 void Progress::print(const std::string &text, double wall) {

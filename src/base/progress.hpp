@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <string>
+#include "base/one_line.hpp"
 
 namespace eulastic {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/body_range.hpp"
-#include "base/mpi_type.hpp"
+#include "base/petsc.hpp"
 
 #include <algorithm>
 #include <vector>

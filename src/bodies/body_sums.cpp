@@ -1,7 +1,5 @@
 #include "bodies/body_sums.hpp"
 
-#include <cmath>
-
 namespace eulastic {
 namespace {
 

@@ -5,7 +5,6 @@
 #include "bodies/body_owners.hpp"
 
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 namespace eulastic {

@@ -4,11 +4,9 @@
 #include "bodies/near_places.hpp"
 #include "bodies/volume_fraction.hpp"
 #include "field/sides.hpp"
-#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace eulastic {
 namespace {
@@ -160,19 +158,16 @@ Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface,
   for (int c = 0; c < phase.tensor.field.count(); ++c) {
     const TensorComponent &component = phase.tensor.components()[c];
     const double turned = turned_stretch(spec, rotation(place.orientation), component);
-    const auto [a, b, at] = component;
-    for (int k = 0; k < box.points_end(2, at[2]); ++k)
-      for (int j = 0; j < box.points_end(1, at[1]); ++j)
-        for (int i = 0; i < box.points_end(0, at[0]); ++i) {
-          double sum = 0;  // of phi in the four cells around an edge, or in the cell
-          for (int n = 0; n < (component.on_edge() ? 4 : 1); ++n) {
-            Int3 beside{i, j, k};
-            beside[a] -= n % 2;
-            beside[b] -= n / 2;
-            sum += fraction(beside);
-          }
-          if (sum > 0) phase.tensor.field[c](i, j, k) = turned;
-        }
+    for_points(box.points(component.at), [&](int i, int j, int k) {
+      double sum = 0;  // of phi in the four cells around an edge, or in the cell
+      for (int n = 0; n < (component.on_edge() ? 4 : 1); ++n) {
+        Int3 beside{i, j, k};
+        beside[component.a] -= n % 2;
+        beside[component.b] -= n / 2;
+        sum += fraction(beside);
+      }
+      if (sum > 0) phase.tensor.field[c](i, j, k) = turned;
+    });
   }
   return phase;
 }

@@ -7,11 +7,9 @@
 #include "bodies/body_sums.hpp"
 #include "bodies/unwrap.hpp"
 #include "field/sides.hpp"
-#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 
 #include <petscblaslapack.h>
-#include <algorithm>
 #include <cmath>
 
 namespace eulastic {

@@ -1,22 +1,18 @@
 #include "bodies/placement.hpp"
 
 #include "base/number_rows.hpp"
+#include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/random.hpp"
 #include "bodies/shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace eulastic {
 namespace {
 
-std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.10g", value);
-  return buffer;
-}
+std::string text(double value) { return print("%.10g", value); }
 
 std::string read_list(const SpeciesSpec &spec, int dimension, std::vector<BodyPlace> *places) {
   static const RowFormat format{

@@ -112,9 +112,7 @@ std::string resample(const CellWindow &window, const VoxelBox &box, const ReadVo
             });
           }
       }
-  for (int k = 0; k < size[2]; ++k)
-    for (int j = 0; j < size[1]; ++j)
-      for (int i = 0; i < size[0]; ++i) fraction(i, j, k) = clean_fraction(fraction(i, j, k));
+  for_points({{0, 0, 0}, size}, [&](int i, int j, int k) { fraction(i, j, k) = clean_fraction(fraction(i, j, k)); });
   return {};
 }
 

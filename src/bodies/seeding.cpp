@@ -1,12 +1,12 @@
 #include "bodies/seeding.hpp"
 
+#include "base/one_line.hpp"
 #include "bodies/packing.hpp"
 #include "bodies/random.hpp"
 #include "bodies/relaxation.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace eulastic {
 namespace {
@@ -183,12 +183,10 @@ private:
 bool is_finite(Shape shape) { return shape == Shape::sphere || shape == Shape::ellipsoid || shape == Shape::biconcave; }
 
 std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t placed, double hematocrit) {
-  char text[300], gap[300] = "";
-  std::snprintf(text, sizeof text,
-                "-%s_%s: %zu bodies do not fit; %zu could be placed, hematocrit %.4g; accepted: fewer bodies",
-                spec.name.c_str(), spec.number >= 0 ? "count" : "hematocrit", count, placed, hematocrit);
-  if (spec.gap > 0) std::snprintf(gap, sizeof gap, ", or a -%s_gap below %.3g", spec.name.c_str(), spec.gap);
-  return std::string(text) + gap;
+  const std::string gap = spec.gap > 0 ? print(", or a -%s_gap below %.3g", spec.name.c_str(), spec.gap) : "";
+  return print("-%s_%s: %zu bodies do not fit; %zu could be placed, hematocrit %.4g; accepted: fewer bodies",
+               spec.name.c_str(), spec.number >= 0 ? "count" : "hematocrit", count, placed, hematocrit) +
+         gap;
 }
 
 std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,

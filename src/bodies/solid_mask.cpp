@@ -23,13 +23,10 @@ SolidMask::SolidMask(const DomainShape &grid)
 }
 
 void SolidMask::add(const CellWindow &window, ConstView fraction) {
-  for (int k = 0; k < window.size[2]; ++k)
-    for (int j = 0; j < window.size[1]; ++j)
-      for (int i = 0; i < window.size[0]; ++i) {
-        const int x = window.begin[0] + i;
-        if (fraction(i, j, k) > 0)
-          bits_[word(x, window.begin[1] + j, window.begin[2] + k)] |= std::uint64_t{1} << (x % 64);
-      }
+  for_points({{0, 0, 0}, window.size}, [&](int i, int j, int k) {
+    const int x = window.begin[0] + i;
+    if (fraction(i, j, k) > 0) bits_[word(x, window.begin[1] + j, window.begin[2] + k)] |= std::uint64_t{1} << (x % 64);
+  });
 }
 
 bool SolidMask::touches(const PlacedConvex &body) const {

@@ -24,9 +24,7 @@ PetscErrorCode BoxedBodies::add(int number, int species, const Box &box, Phase &
 }
 
 PetscErrorCode BoxedBodies::add_packed(const std::vector<double> &packed) {
-  PetscFunctionBeginUser;
-  PetscCall(bodies_.add_packed(packed, flow_.now.phases[static_cast<int>(packed[1])]));
-  PetscFunctionReturn(0);
+  return bodies_.add_packed(packed, flow_.now.phases[static_cast<int>(packed[1])]);
 }
 
 PetscErrorCode BoxedBodies::add_copies(const std::vector<std::pair<int, int>> &copies,
@@ -69,15 +67,12 @@ Phase take_body(const Box &box, const Phase &like, int number, const Field &brou
   const ConstView own = std::as_const(phase).fraction[0];
   for (int c = 0; c < phase.tensor.field.count(); ++c) {
     const TensorComponent &component = phase.tensor.components()[c];
-    const Staggering &at = component.at;
-    const auto [low_a, low_b] = component.steps(own);
-    for (int k = 0; k < box.points_end(2, at[2]); ++k)
-      for (int j = 0; j < box.points_end(1, at[1]); ++j)
-        for (int i = 0; i < box.points_end(0, at[0]); ++i) {
-          const double *here = &own(i, j, k);
-          if (here[0] > 0 || here[-low_a] > 0 || here[-low_b] > 0 || here[-low_a - low_b] > 0)
-            phase.tensor.field[c](i, j, k) = brought[2 + c](i, j, k);
-        }
+    const auto low = component.steps(own);
+    for_points(box.points(component.at), [&](int i, int j, int k) {
+      const double *here = &own(i, j, k);
+      if (here[0] > 0 || here[-low[0]] > 0 || here[-low[1]] > 0 || here[-low[0] - low[1]] > 0)
+        phase.tensor.field[c](i, j, k) = brought[2 + c](i, j, k);
+    });
   }
   return phase;
 }

@@ -4,13 +4,12 @@
 #include "boxes/receptors.hpp"
 #include "field/fed_velocity.hpp"
 #include "field/sides.hpp"
-#include "membranes/stretched_body.hpp"
+#include "membranes/stretch_force.hpp"
 #include "solids/elastic_force.hpp"
 #include "solids/transport.hpp"
 #include "solids/unresolved.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <numeric>
 #include <utility>
 
@@ -99,9 +98,7 @@ PetscErrorCode FreeBodies::add(int number, int species, const Box &box, Phase &&
 template <class PhaseOrConst, class Visit>
 void FreeBodies::for_values(const Box &block, const Int3 &first, PhaseOrConst &phase, const Visit &visit) {
   const auto visit_field = [&](auto view, const Staggering &at) {
-    for (int k = 0; k < block.points_end(2, at[2]); ++k)
-      for (int j = 0; j < block.points_end(1, at[1]); ++j)
-        for (int i = 0; i < block.points_end(0, at[0]); ++i) visit(view(first[0] + i, first[1] + j, first[2] + k));
+    for_points(block.points(at), [&](int i, int j, int k) { visit(view(first[0] + i, first[1] + j, first[2] + k)); });
   };
   visit_field(phase.fraction[0], at_centre);
   for (int c = 0; c < phase.tensor.field.count(); ++c)

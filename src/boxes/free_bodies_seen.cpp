@@ -2,7 +2,7 @@
 #include "boxes/free_bodies.hpp"
 
 #include "field/sides.hpp"
-#include "membranes/stretched_body.hpp"
+#include "membranes/stretch_force.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -183,17 +183,14 @@ void fill_shown(const BodyInBox &body, const Box &block, int tensors, Field *fie
   for_points(block.rows(), [&](int i, int j, int k) { (*field)[fraction_shown](i, j, k) = phi(i, j, k); });
   for (int c = 0; c < tensors; ++c) {
     const TensorComponent &component = body.phase->tensor.components()[c];
-    const Staggering &at = component.at;
-    const auto [low_a, low_b] = component.steps(phi);
+    const auto low = component.steps(phi);
     const ConstView B = of_block(body.phase->tensor.field[c]);
     const View tensor = (*field)[tensor_shown + c], part = (*field)[tensor_shown + tensors + c];
-    for (int k = 0; k < block.points_end(2, at[2]); ++k)
-      for (int j = 0; j < block.points_end(1, at[1]); ++j)
-        for (int i = 0; i < block.points_end(0, at[0]); ++i) {
-          const double *here = &phi(i, j, k);
-          part(i, j, k) = 0.25 * ((here[0] + here[-low_a - low_b]) + (here[-low_a] + here[-low_b]));
-          tensor(i, j, k) = B(i, j, k) - component.rest();
-        }
+    for_points(block.points(component.at), [&](int i, int j, int k) {
+      const double *here = &phi(i, j, k);
+      part(i, j, k) = 0.25 * ((here[0] + here[-low[0] - low[1]]) + (here[-low[0]] + here[-low[1]]));
+      tensor(i, j, k) = B(i, j, k) - component.rest();
+    });
   }
 }
 

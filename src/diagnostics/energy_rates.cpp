@@ -2,7 +2,6 @@
 
 #include "base/events.hpp"
 #include "diagnostics/edge_stress.hpp"
-#include "grid/domain.hpp"
 #include "grid/sum_row_parts.hpp"
 
 #include <algorithm>
@@ -122,18 +121,14 @@ private:
       Int3 first = begin, last = end;
       first[c] = corner_high ? box_.cells()[c] : 0;
       last[c] = first[c] + 1;
-      for_cells(first, last,
-                [&](const Int3 &cell) { sums->add(wall_power, 0.5 * speed * elastic_traction(d, high, c, cell)); });
+      for_points({first, last}, [&](int i, int j, int k) {
+        sums->add(wall_power, 0.5 * speed * elastic_traction(d, high, c, {i, j, k}));
+      });
     }
     if (box_.touches_low(c)) begin[c] = 1;
-    for_cells(begin, end, [&](const Int3 &cell) { sums->add(wall_power, speed * traction(d, high, c, cell)); });
-  }
-
-  template <class Visit>
-  static void for_cells(const Int3 &begin, const Int3 &end, const Visit &visit) {
-    for (int k = begin[2]; k < end[2]; ++k)
-      for (int j = begin[1]; j < end[1]; ++j)
-        for (int i = begin[0]; i < end[0]; ++i) visit(Int3{i, j, k});
+    for_points({begin, end}, [&](int i, int j, int k) {
+      sums->add(wall_power, speed * traction(d, high, c, {i, j, k}));
+    });
   }
 
   static Int3 edge_of(int d, bool high, Int3 cell) {

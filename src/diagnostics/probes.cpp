@@ -3,7 +3,6 @@
 #include "base/events.hpp"
 #include "base/exact_sum.hpp"
 #include "field/sides.hpp"
-#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,6 @@
 
 #include "base/events.hpp"
 #include "base/exact_sum.hpp"
-#include "grid/domain.hpp"
 
 namespace eulastic {
 namespace {

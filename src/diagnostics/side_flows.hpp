@@ -17,7 +17,7 @@ struct SideFlow {
   double flow_rate = 0;  ///< volume into the box per time; in 2-D per depth
   double pressure = 0;   ///< given, or the mean over the open part of the boundary, extrapolated from two cells
   double power = 0;      ///< of pressure and kinetic energy into the box; viscous work on the boundary is neglected
-  std::string name() const { return std::string{"xyz"[direction]} + (high ? "max" : "min"); }
+  std::string name() const { return side_name(direction, high); }
 };
 
 /// All boundaries that volume crosses, in the order xmin, xmax, ymin, ...

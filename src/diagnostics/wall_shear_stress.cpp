@@ -3,8 +3,6 @@
 #include "base/events.hpp"
 #include "diagnostics/edge_stress.hpp"
 
-#include <algorithm>
-
 namespace eulastic {
 namespace {
 
@@ -20,15 +18,13 @@ public:
     Int3 end = box_.cells();
     end[d_] = 1;
     double *to = stress->components[c].data();
-    for (int k = 0; k < end[2]; ++k)
-      for (int j = 0; j < end[1]; ++j)
-        for (int i = 0; i < end[0]; ++i) {
-          Int3 cell{i, j, k};
-          cell[d_] = high_ ? last_ : 0;
-          const double low = value(cell);
-          ++cell[c];
-          *to++ += 0.5 * (low + value(cell));
-        }
+    for_points({{0, 0, 0}, end}, [&](int i, int j, int k) {
+      Int3 cell{i, j, k};
+      cell[d_] = high_ ? last_ : 0;
+      const double low = value(cell);
+      ++cell[c];
+      *to++ += 0.5 * (low + value(cell));
+    });
   }
 
   // Adds the viscous stress of the momentum equation.

@@ -4,7 +4,7 @@
 #include "field/sides.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/height_curvature.hpp"
-#include "kernels/plane_area.hpp"
+#include "kernels/plane.hpp"
 #include "kernels/stencils.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "field/fed_velocity.hpp"
 
 #include "field/reflection.hpp"
-#include "grid/domain.hpp"
 
 namespace eulastic {
 

@@ -25,9 +25,7 @@ public:
   /// Calls visit(local face, value) for every value of the plane, including ghosts.
   template <class Visit>
   void for_each(const Visit &visit) {
-    for (int k = begin_[2]; k < end_[2]; ++k)
-      for (int j = begin_[1]; j < end_[1]; ++j)
-        for (int i = begin_[0]; i < end_[0]; ++i) visit(Int3{i, j, k}, values_[index_of(i, j, k)]);
+    for_points({begin_, end_}, [&](int i, int j, int k) { visit(Int3{i, j, k}, values_[index_of(i, j, k)]); });
   }
 
 private:

@@ -3,7 +3,6 @@
 #include "grid/threads.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>

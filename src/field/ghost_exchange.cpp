@@ -24,14 +24,6 @@ PetscErrorCode broadcast_sources(PetscSF scatter, const Source *owned, Source *c
   PetscFunctionReturn(0);
 }
 
-// Calls visit(point) for all points begin <= point < end, x fastest.
-template <class Visit>
-void for_block(const Int3 &begin, const Int3 &end, const Visit &visit) {
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j)
-      for (int i = begin[0]; i < end[0]; ++i) visit(Int3{i, j, k});
-}
-
 // Offset of the first point in the memory of a field, where its first row begins.
 std::ptrdiff_t first_offset(const Layout &layout) {
   return layout.offset(-layout.ghosts[0], -layout.ghosts[1], -layout.ghosts[2]);
@@ -65,17 +57,18 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
     end[d] = n[d] + layout.ghosts[d];
   }
   std::vector<Source> sources(layout.size), owned, near(std::size_t(near_points[0]) * near_points[1] * near_points[2]);
-  for_block({}, n, [&](const Int3 &p) {
-    owned.push_back({static_cast<PetscInt>(domain.rank()), offset(p), static_cast<PetscInt>(layout.size),
+  for_points({{0, 0, 0}, n}, [&](int i, int j, int k) {
+    owned.push_back({static_cast<PetscInt>(domain.rank()), offset({i, j, k}), static_cast<PetscInt>(layout.size),
                      static_cast<PetscInt>(layout.sy), static_cast<PetscInt>(layout.sz)});
   });
   PetscCall(broadcast_sources(scatter, owned.data(), near.data()));
   auto next = near.begin();
-  for_block(near_begin, near_end, [&](const Int3 &p) { sources[offset(p)] = *next++; });
+  for_points({near_begin, near_end}, [&](int i, int j, int k) { sources[offset({i, j, k})] = *next++; });
 
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
-  for_block(begin, end, [&](const Int3 &p) {
+  for_points({begin, end}, [&](int i, int j, int k) {
+    const Int3 p{i, j, k};
     Int3 inner_point;
     for (int d = 0; d < 3; ++d) inner_point[d] = std::clamp<int>(p[d], -width, n[d] + width - 1);
     const Source &source = sources[offset(inner_point)];
@@ -91,7 +84,8 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
                             PETSC_COPY_VALUES));
   PetscCall(broadcast_sources(outer_ghosts.get(), sources.data(), sources.data()));
 
-  for_block(begin, end, [&](const Int3 &p) {
+  for_points({begin, end}, [&](int i, int j, int k) {
+    const Int3 p{i, j, k};
     const Source &source = sources[offset(p)];
     const bool is_owned = p[0] >= 0 && p[0] < n[0] && p[1] >= 0 && p[1] < n[1] && p[2] >= 0 && p[2] < n[2];
     if (!is_owned && source.rank >= 0) ghosts->push_back({p, source.rank, source.offset, source.size});

@@ -5,7 +5,7 @@
 // rows, and the ghosts at the ends of a row are copied from its other end.
 #pragma once
 
-#include "base/mpi_type.hpp"
+#include "base/petsc.hpp"
 #include "field/field.hpp"
 #include "grid/domain.hpp"
 #include "grid/occupied_rows.hpp"

@@ -1,12 +1,34 @@
-// Material properties of a body.
+// Material properties of the fluid and of a body.
 #pragma once
 
-#include "field/body_force.hpp"
+#include "grid/box.hpp"
 #include "kernels/membrane_law.hpp"
 
+#include <cmath>
 #include <vector>
 
 namespace eulastic {
+
+/// The force per mass f cos(frequency t + phase).
+struct BodyForce {
+  Real3 force{};         ///< length / time^2
+  double frequency = 0;  ///< angular, 1 / time
+  double phase = 0;      ///< rad
+  bool acts() const { return force != Real3{}; }
+  Real3 at(double time) const {
+    const double factor = frequency == 0 && phase == 0 ? 1.0 : std::cos(frequency * time + phase);
+    return {force[0] * factor, force[1] * factor, force[2] * factor};
+  }
+};
+
+/// Parameters of the fluid.
+struct Fluid {
+  double density = 1;    ///< rho
+  double viscosity = 1;  ///< mu, dynamic; also of bodies without a viscosity of their own
+  bool inertia = true;   ///< false omits v.grad v
+  BodyForce body_force;
+  double kinematic_viscosity() const { return viscosity / density; }
+};
 
 /// red_cell occurs in options only: it stands for a membrane with the parameters of a red blood cell.
 enum class Law { neo_hookean, mooney_rivlin, membrane, red_cell, rigid };
@@ -45,5 +67,10 @@ struct Material {
   /// Whether the phase transports a tensor: B, or B_s of a membrane.
   bool carries_tensor() const { return elastic() || is_membrane(); }
 };
+
+/// Returns the dynamic viscosity of a body.
+inline double viscosity_of(const Material &material, const Fluid &fluid) {
+  return material.viscosity > 0 ? material.viscosity : fluid.viscosity;
+}
 
 }  // namespace eulastic

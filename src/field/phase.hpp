@@ -3,23 +3,19 @@
 // and the phase on the grid is empty.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "field/carried_tensor.hpp"
+#include "field/ghost_exchange.hpp"
 #include "field/material.hpp"
+#include "field/sides.hpp"
 #include "field/surface_marker.hpp"
+#include "grid/box.hpp"
 #include "grid/occupied_rows.hpp"
 
 #include <string>
 #include <vector>
 
 namespace eulastic {
-
-/// A block of cells, begin to end in every direction.
-struct Extent {
-  Int3 begin, end;
-  Int3 middle() const {
-    return {begin[0] + (end[0] - begin[0]) / 2, begin[1] + (end[1] - begin[1]) / 2, begin[2] + (end[2] - begin[2]) / 2};
-  }
-};
 
 /// The state of a phase on this rank.
 struct Phase {
@@ -57,6 +53,19 @@ struct BodyInBox {
   const Phase *phase;                         ///< phase that contains only this body
   const std::vector<SurfaceMarker> *markers;  ///< markers of a membrane
   const Field *velocity = nullptr;            ///< on the faces of the box; null if not needed
+};
+
+/// Box, boundaries and ghost exchange of a phase.
+struct PhasePlace {
+  const Box *box;
+  const BoxSides *sides;
+  /// Null if the box is complete on this rank: its ghosts are behind boundaries of the domain, or far from bodies.
+  GhostExchange *exchange;
+
+  /// Updates ghosts that other ranks own; `rows` as in WantedGhosts.
+  PetscErrorCode exchange_ghosts(Field &field, int width, const OccupiedRows *rows) const;
+  /// Updates ghosts of B, from other ranks and behind boundaries.
+  PetscErrorCode update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const;
 };
 
 }  // namespace eulastic

@@ -1,6 +1,6 @@
 #include "field/work_space.hpp"
 
-#include "grid/skipping.hpp"
+#include "grid/occupied_rows.hpp"
 
 #include <algorithm>
 

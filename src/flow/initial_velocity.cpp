@@ -127,14 +127,12 @@ void set_initial_velocity(const Box &box, const BoxSides &sides, const InitialFl
   for (int c = 0; c < velocity.count(); ++c) {
     Int3 end = layout.cells;
     if (box.is_open(c, true)) end[c] = box.points_end(c, true);
-    for (int k = 0; k < end[2]; ++k)
-      for (int j = 0; j < end[1]; ++j)
-        for (int i = 0; i < end[0]; ++i) {
-          const Int3 cell{layout.begin[0] + i, layout.begin[1] + j, layout.begin[2] + k};
-          Real3 x{};  // z = 0 in 2-D
-          for (int d = 0; d < box.dimension(); ++d) x[d] = (cell[d] + (d == c ? 0.0 : 0.5)) * box.spacing()[d];
-          velocity[c](i, j, k) = value(c, x) + flow.mean[c];
-        }
+    for_points({{0, 0, 0}, end}, [&](int i, int j, int k) {
+      const Int3 cell{layout.begin[0] + i, layout.begin[1] + j, layout.begin[2] + k};
+      Real3 x{};  // z = 0 in 2-D
+      for (int d = 0; d < box.dimension(); ++d) x[d] = (cell[d] + (d == c ? 0.0 : 0.5)) * box.spacing()[d];
+      velocity[c](i, j, k) = value(c, x) + flow.mean[c];
+    });
   }
 }
 

@@ -3,7 +3,6 @@
 #include "base/exact_sum.hpp"
 #include "field/law.hpp"
 #include "field/open_sides.hpp"
-#include "grid/domain.hpp"
 #include "grid/threads.hpp"
 #include "kernels/isa.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/fluid.hpp"
+#include "field/material.hpp"
 #include "field/phase.hpp"
 #include "parts/flow_part.hpp"
 #include "solids/elastic_force.hpp"

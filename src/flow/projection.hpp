@@ -2,12 +2,17 @@
 // (8) to (13).
 #pragma once
 
+#include "base/petsc.hpp"
+#include "field/field.hpp"
 #include "parts/flow.hpp"
 #include "pressure/pressure_solver.hpp"
 
 #include <memory>
 
 namespace eulastic {
+
+/// Computes D* = rho div v* at the owned centres. v* needs one ghost.
+PetscErrorCode compute_divergence(const Box &box, double density, const Field &velocity_star, Field &divergence);
 
 /// Factors of the rotational update of the pressure: of D*, and of D* times the local kinematic viscosity.
 struct PressureRotation {

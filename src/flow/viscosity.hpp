@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/fluid.hpp"
+#include "field/material.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 #include "flow/local_viscosity.hpp"

@@ -1,9 +1,7 @@
 #include "grid/active_segments.hpp"
 
-#include "grid/skipping.hpp"
 #include "grid/threads.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <vector>
 
 namespace eulastic {
@@ -23,6 +24,17 @@ inline constexpr Staggering at_centre{false, false, false};
 inline constexpr std::array<Staggering, 3> at_face{{{true, false, false}, {false, true, false}, {false, false, true}}};
 /// Staggering of a field on the edges between four centres of the plane ab.
 constexpr Staggering at_edge(int a, int b) { return {a == 0 || b == 0, a == 1 || b == 1, a == 2 || b == 2}; }
+
+/// A block of cells or points, begin to end in every direction.
+struct Extent {
+  Int3 begin, end;
+  Int3 middle() const {
+    return {begin[0] + (end[0] - begin[0]) / 2, begin[1] + (end[1] - begin[1]) / 2, begin[2] + (end[2] - begin[2]) / 2};
+  }
+};
+
+/// "xmin", "xmax", "ymin", ...
+inline std::string side_name(int d, bool high) { return std::string{"xyz"[d]} + (high ? "max" : "min"); }
 
 /// The whole domain of a run.
 struct DomainShape {
@@ -109,6 +121,10 @@ public:
   /// Returns the end of the local indices of a field along d: the number of cells, plus one where the field is
   /// staggered and the block touches the high boundary.
   int points_end(int d, bool staggered) const { return layout_.cells[d] + (staggered && touches_high(d) ? 1 : 0); }
+  /// All points of a field in the block.
+  Extent points(const Staggering &at) const {
+    return {{0, 0, 0}, {points_end(0, at[0]), points_end(1, at[1]), points_end(2, at[2])}};
+  }
   struct Range {
     int begin, end;
   };
@@ -134,6 +150,13 @@ private:
   Layout layout_;
 };
 
+/// Calls visit(i, j, k) for all points of a block, x fastest.
+template <class Visit>
+void for_points(const Extent &block, Visit visit) {
+  for (int k = block.begin[2]; k < block.end[2]; ++k)
+    for (int j = block.begin[1]; j < block.end[1]; ++j)
+      for (int i = block.begin[0]; i < block.end[0]; ++i) visit(i, j, k);
+}
 /// Calls visit(i, j, k) for all points of these rows.
 template <class Visit>
 void for_points(const std::vector<Segment> &rows, Visit visit) {

@@ -140,9 +140,7 @@ PetscErrorCode Domain::create(MPI_Comm comm, const GridSpec &spec) {
 }
 
 PetscErrorCode Domain::create_cell_dm(DMDAStencilType stencil, int width, DM *dm) const {
-  PetscFunctionBeginUser;
-  PetscCall(create_dm(false, stencil, width, dm));
-  PetscFunctionReturn(0);
+  return create_dm(false, stencil, width, dm);
 }
 
 // With `high_faces` a direction with boundaries has one point more than cells.

@@ -1,14 +1,19 @@
 #include "grid/occupied_rows.hpp"
 
-#include "grid/domain.hpp"
-#include "grid/skipping.hpp"
 #include "grid/threads.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
 namespace eulastic {
+namespace {
+
+bool skip_nothing = false;
+
+}  // namespace
+
+void set_skip_nothing(bool nothing) noexcept { skip_nothing = nothing; }
+bool skips_nothing() noexcept { return skip_nothing; }
 
 // Tests bits without the sign bit, because the compiler vectorises integer operations.
 bool OccupiedRows::any(const double *row, int begin, int end) noexcept {

@@ -9,6 +9,12 @@
 
 namespace eulastic {
 
+/// Whether work is skipped where a scene has nothing to compute, which must not change a bit of the result: tests
+/// switch it off and compare (tests/same_bits). With true every cell of every row is computed, and work space is filled
+/// with a wrong value each time it is leased. Must be called before a grid is created. The default is false.
+void set_skip_nothing(bool nothing) noexcept;
+bool skips_nothing() noexcept;
+
 /// For every row of cells the span within which a field, such as phi, or the result of a stencil on it can be nonzero.
 class OccupiedRows {
 public:

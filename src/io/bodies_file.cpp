@@ -2,16 +2,12 @@
 
 #include "base/body_range.hpp"
 #include "base/events.hpp"
-#include "base/mpi_type.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 #include "io/growing_datasets.hpp"
-#include "io/text_file.hpp"
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -66,17 +62,9 @@ std::string copy_file(const std::string &path, const std::string &target) {
 
 BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &columns)
     : comm_(comm), path_(std::move(path)), has_(columns) {
-  columns_ = {{"centroid", 3, 0}, {"velocity", 3, 0}};
-  for (const char *name :
-       {"volume", "taylor_deformation", "inclination", "elastic_energy", "largest_stretch", "rest_deformation"})
-    columns_.push_back({name, 1, 0});
-  for (const char *name : {"surface_area", "shear_energy", "area_energy", "bending_energy", "turning_rate"})
-    if (has_.membranes) columns_.push_back({name, 1, 0});
-  for (const char *name : {"force", "torque"})
-    if (has_.loads) columns_.push_back({name, 3, 0});
-  if (has_.bonds)
-    columns_.insert(columns_.end(),
-                    {{"bonds", 1, 0}, {"bond_force", 3, 0}, {"bond_tension", 1, 0}, {"bond_age", 1, 0}});
+  for_numbers({}, has_.membranes, has_.loads, has_.bonds, [&](const char *name, const auto &value) {
+    columns_.push_back({name, static_cast<int>(sizeof value / sizeof(double)), 0});
+  });
   for (const Column &column : columns_) width_ += column.width;
   (void)MPI_Comm_rank(comm, &rank_);
   (void)MPI_Comm_size(comm, &ranks_);
@@ -94,24 +82,11 @@ PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::v
   }
   if (known_.bodies == 0) PetscFunctionReturn(0);
   times_.push_back(time);
-  const auto put = [&](const Real3 &vector) { waiting_.insert(waiting_.end(), vector.begin(), vector.end()); };
-  for (const BodyRecord &b : owned) {
-    put(b.centroid);
-    put(b.velocity);
-    waiting_.insert(waiting_.end(), {b.volume, b.taylor_deformation, b.inclination, b.elastic_energy, b.largest_stretch,
-                                     b.rest_deformation});
-    if (has_.membranes)
-      waiting_.insert(waiting_.end(),
-                      {b.surface_area, b.shear_energy, b.area_energy, b.bending_energy, b.turning_rate});
-    if (has_.loads) {
-      put(b.force);
-      put(b.torque);
-    }
-    if (!has_.bonds) continue;
-    waiting_.push_back(b.bonds);
-    put(b.bond_force);
-    waiting_.insert(waiting_.end(), {b.bond_tension, b.bond_age});
-  }
+  for (const BodyRecord &body : owned)
+    for_numbers(body, has_.membranes, has_.loads, has_.bonds, [&](const char *, const auto &value) {
+      const auto *first = reinterpret_cast<const double *>(&value);
+      waiting_.insert(waiting_.end(), first, first + sizeof value / sizeof(double));
+    });
   const std::size_t bytes = times_.size() * (1 + width_ * known_.bodies) * sizeof(double);
   if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(write_waiting());
   PetscFunctionReturn(0);
@@ -151,11 +126,7 @@ PetscErrorCode BodiesFile::resume(long *rows) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodiesFile::flush() {
-  PetscFunctionBeginUser;
-  PetscCall(write_waiting());
-  PetscFunctionReturn(0);
-}
+PetscErrorCode BodiesFile::flush() { return write_waiting(); }
 
 // Buffered rows of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
 PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *values) const {

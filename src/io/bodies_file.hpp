@@ -9,8 +9,8 @@
 
 #include "base/petsc.hpp"
 #include "io/body_record.hpp"
-#include "io/file_stamp.hpp"
 #include "io/hdf5_handle.hpp"
+#include "io/text_file.hpp"
 
 #include <cstdint>
 #include <functional>

@@ -26,4 +26,34 @@ struct BodyRecord {
   double surface_area = 0, shear_energy = 0, area_energy = 0, bending_energy = 0, turning_rate = 0;
 };
 
+/// Calls visit(name, value) for all numbers of a record, the value a double or a Real3; on request also for those of
+/// membranes, loads and bonds.
+template <class Visit>
+void for_numbers(const BodyRecord &body, bool membranes, bool loads, bool bonds, const Visit &visit) {
+  visit("centroid", body.centroid);
+  visit("velocity", body.velocity);
+  visit("volume", body.volume);
+  visit("taylor_deformation", body.taylor_deformation);
+  visit("inclination", body.inclination);
+  visit("elastic_energy", body.elastic_energy);
+  visit("largest_stretch", body.largest_stretch);
+  visit("rest_deformation", body.rest_deformation);
+  if (membranes) {
+    visit("surface_area", body.surface_area);
+    visit("shear_energy", body.shear_energy);
+    visit("area_energy", body.area_energy);
+    visit("bending_energy", body.bending_energy);
+    visit("turning_rate", body.turning_rate);
+  }
+  if (loads) {
+    visit("force", body.force);
+    visit("torque", body.torque);
+  }
+  if (!bonds) return;
+  visit("bonds", body.bonds);
+  visit("bond_force", body.bond_force);
+  visit("bond_tension", body.bond_tension);
+  visit("bond_age", body.bond_age);
+}
+
 }  // namespace eulastic

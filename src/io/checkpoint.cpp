@@ -1,12 +1,11 @@
 #include "io/checkpoint.hpp"
 
 #include "base/events.hpp"
-#include "grid/domain.hpp"
+#include "base/one_line.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <regex>
 
@@ -45,11 +44,7 @@ PetscErrorCode find_content(Hdf5File &file, std::string *content) {
 
 }  // namespace
 
-std::string checkpoint_name(long step) {
-  char name[40];
-  std::snprintf(name, sizeof name, "checkpoint_%08ld.h5", step);
-  return name;
-}
+std::string checkpoint_name(long step) { return print("checkpoint_%08ld.h5", step); }
 
 long checkpoint_step(const std::string &path) {
   static const std::regex pattern("checkpoint_([0-9]{1,18})\\.h5");

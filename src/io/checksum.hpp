@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <string>
+#include "base/one_line.hpp"
 
 namespace eulastic {
 
@@ -30,10 +30,6 @@ std::uint64_t checksum(const T *values, std::size_t count, std::uint64_t first) 
 }
 
 /// 16 hexadecimal digits: the attribute `checksum` of a dataset.
-inline std::string checksum_text(std::uint64_t sum) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(sum));
-  return text;
-}
+inline std::string checksum_text(std::uint64_t sum) { return print("%016llx", static_cast<unsigned long long>(sum)); }
 
 }  // namespace eulastic

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
+#include <numeric>
 
 namespace eulastic {
 namespace {
@@ -13,6 +15,20 @@ constexpr hsize_t chunk_bodies = 1 << 13;
 
 // The value in rows before the body entered.
 double value_before_entry(const std::string &column) { return column == "volume" ? 0 : std::nan(""); }
+
+// Of the rows from `begin` on.
+bool checksum_of_rows(hid_t dataset, const std::vector<hsize_t> &shape, hsize_t begin, std::uint64_t *sum) {
+  std::vector<hsize_t> start(shape.size(), 0), one = shape;
+  one[0] = 1;
+  const hsize_t row = std::accumulate(one.begin(), one.end(), hsize_t{1}, std::multiplies<>());
+  std::vector<double> values(row);
+  *sum = 0;
+  for (start[0] = begin; start[0] < shape[0]; ++start[0]) {
+    if (!read_block(dataset, static_cast<int>(one.size()), start.data(), one.data(), values.data())) return false;
+    *sum += checksum(values.data(), row, start[0] * row);
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -52,11 +68,7 @@ bool set_rows(hid_t file, const char *name, const RowsPart &whole) {
 bool write_part(hid_t file, const char *name, const RowsPart &part, const std::vector<double> &values) {
   const hsize_t start[3] = {part.row, part.body, 0}, size[3] = {part.rows, part.bodies, part.width};
   Hdf5Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
-  const Hdf5Space file_space(H5Dget_space(dataset.get())), memory_space(H5Screate_simple(part.rank(), size, nullptr));
-  return H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, size, nullptr) >= 0 &&
-         H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, values.data()) >=
-             0 &&
-         dataset.close();
+  return write_block(dataset.get(), part.rank(), start, size, values.data()) && dataset.close();
 }
 
 bool set_bodies(hid_t file, const char *name, hsize_t bodies, std::uint64_t *sum) {
@@ -65,19 +77,7 @@ bool set_bodies(hid_t file, const char *name, hsize_t bodies, std::uint64_t *sum
   if (shape.size() < 2) return false;
   shape[1] = bodies;
   if (H5Dset_extent(dataset.get(), shape.data()) < 0) return false;
-  const Hdf5Space file_space(H5Dget_space(dataset.get()));
-  std::vector<hsize_t> start(shape.size(), 0), one = shape;
-  one[0] = 1;
-  const Hdf5Space memory_space(H5Screate_simple(static_cast<int>(one.size()), one.data(), nullptr));
-  std::vector<double> values(bodies * (shape.size() == 3 ? shape[2] : 1));
-  *sum = 0;
-  for (; start[0] < shape[0]; ++start[0]) {
-    if (H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, one.data(), nullptr) < 0 ||
-        H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, values.data()) < 0)
-      return false;
-    *sum += checksum(values.data(), values.size(), start[0] * values.size());
-  }
-  return dataset.close();
+  return checksum_of_rows(dataset.get(), shape, 0, sum) && dataset.close();
 }
 
 bool cut_rows(hid_t file, const char *name, hsize_t rows, std::uint64_t *sum) {
@@ -87,19 +87,9 @@ bool cut_rows(hid_t file, const char *name, hsize_t rows, std::uint64_t *sum) {
   const Hdf5Attribute attribute(H5Aopen(dataset.get(), "checksum", H5P_DEFAULT));
   if (shape.empty() || shape[0] < rows || H5Aread(attribute.get(), hdf5_string(16).get(), text) < 0) return false;
   *sum = std::strtoull(text, nullptr, 16);
-  hsize_t row = 1, start[3] = {rows, 0, 0};
-  for (std::size_t d = 1; d < shape.size(); ++d) row *= shape[d];
-  std::vector<hsize_t> one = shape;
-  one[0] = 1;
-  std::vector<double> values(row);
-  const Hdf5Space file_space(H5Dget_space(dataset.get()));
-  const Hdf5Space memory_space(H5Screate_simple(static_cast<int>(one.size()), one.data(), nullptr));
-  for (; start[0] < shape[0]; ++start[0]) {
-    if (H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, one.data(), nullptr) < 0 ||
-        H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, values.data()) < 0)
-      return false;
-    *sum -= checksum(values.data(), row, start[0] * row);
-  }
+  std::uint64_t lost = 0;
+  if (!checksum_of_rows(dataset.get(), shape, rows, &lost)) return false;
+  *sum -= lost;
   shape[0] = rows;
   return H5Dset_extent(dataset.get(), shape.data()) >= 0 &&
          write_text_attribute(dataset.get(), "checksum", checksum_text(*sum)) && dataset.close();

@@ -2,7 +2,6 @@
 
 #include "base/rank_zero.hpp"
 #include "io/checksum.hpp"
-#include "io/deadline.hpp"
 #include "io/fail_together.hpp"
 #include "io/text_file.hpp"
 
@@ -51,9 +50,7 @@ bool ranks_differ(MPI_Comm comm, const std::string &path) {
 }  // namespace
 
 PetscErrorCode Hdf5File::check(bool fine, const std::string &what) const {
-  PetscFunctionBeginUser;
-  PetscCall(fail_together(comm_, fine ? std::string() : path_ + ": " + what));
-  PetscFunctionReturn(0);
+  return fail_together(comm_, fine ? std::string() : path_ + ": " + what);
 }
 
 PetscErrorCode Hdf5File::create(MPI_Comm comm, const std::string &path) {
@@ -108,22 +105,6 @@ Hdf5File::~Hdf5File() {
   }
   (void)file_.close();
   if (writing_ && mpi_rank_ == 0) (void)::unlink(temporary_name(path_).c_str());
-}
-
-PetscErrorCode Hdf5File::create_group(const std::string &name) {
-  PetscFunctionBeginUser;
-  Hdf5Object group(H5Gcreate2(file_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  PetscCall(check(bool(group), "cannot create group " + name));
-  PetscCall(check(group.close(), "cannot close group " + name));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Hdf5File::link(const std::string &name, const std::string &file, const std::string &dataset) {
-  PetscFunctionBeginUser;
-  const bool linked =
-      H5Lcreate_external(file.c_str(), dataset.c_str(), file_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0;
-  PetscCall(check(linked, "cannot link " + name + " to " + file));
-  PetscFunctionReturn(0);
 }
 
 bool Hdf5File::has(const std::string &dataset) const {
@@ -230,36 +211,22 @@ PetscErrorCode Hdf5File::write_raw_attribute(const std::string &object, const st
 }
 
 PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, const std::string &value) {
-  PetscFunctionBeginUser;
-  PetscCall(write_raw_attribute(object, name, hdf5_string(value.size()).get(), Hdf5Space(H5Screate(H5S_SCALAR)),
-                                value.c_str()));
-  PetscFunctionReturn(0);
+  return write_raw_attribute(object, name, hdf5_string(value.size()).get(), Hdf5Space(H5Screate(H5S_SCALAR)),
+                             value.c_str());
 }
 
-template <class T>
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name,
-                                         const std::vector<T> &value) {
-  PetscFunctionBeginUser;
+PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, const Real3 &value) {
   const hsize_t count = value.size();
-  PetscCall(
-      write_raw_attribute(object, name, hdf5_type<T>(), Hdf5Space(H5Screate_simple(1, &count, nullptr)), value.data()));
-  PetscFunctionReturn(0);
+  return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate_simple(1, &count, nullptr)),
+                             value.data());
 }
-
-template PetscErrorCode Hdf5File::write_attribute(const std::string &, const std::string &,
-                                                  const std::vector<double> &);
-template PetscErrorCode Hdf5File::write_attribute(const std::string &, const std::string &, const std::vector<long> &);
 
 PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, double value) {
-  PetscFunctionBeginUser;
-  PetscCall(write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate(H5S_SCALAR)), &value));
-  PetscFunctionReturn(0);
+  return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate(H5S_SCALAR)), &value);
 }
 
 PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, long value) {
-  PetscFunctionBeginUser;
-  PetscCall(write_raw_attribute(object, name, H5T_NATIVE_LONG, Hdf5Space(H5Screate(H5S_SCALAR)), &value));
-  PetscFunctionReturn(0);
+  return write_raw_attribute(object, name, H5T_NATIVE_LONG, Hdf5Space(H5Screate(H5S_SCALAR)), &value);
 }
 
 PetscErrorCode Hdf5File::open_attribute(const std::string &object, const std::string &name, Hdf5Attribute *attribute) {
@@ -373,7 +340,6 @@ PetscErrorCode Hdf5File::write_values(const std::string &name, const Hyperslab &
                                       const std::vector<T> &values) {
   PetscFunctionBeginUser;
   const Hdf5Space file_space(H5Screate_simple(slab.rank, slab.total, nullptr));
-  const Hdf5Space memory_space(H5Screate_simple(slab.rank, slab.count, nullptr));
   const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
   (void)H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // every point is written
   Hdf5Dataset dataset(
@@ -383,9 +349,7 @@ PetscErrorCode Hdf5File::write_values(const std::string &name, const Hyperslab &
   const hsize_t bytes = H5Dget_storage_size(dataset.get());
   PetscCall(fail_together(comm_, mpi_rank_ == 0 ? reserve(temporary_name(path_), offset, bytes) : std::string()));
   const Hdf5Property transfer = hdf5_collective();
-  const bool written =
-      H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, slab.begin, nullptr, slab.count, nullptr) >= 0 &&
-      H5Dwrite(dataset.get(), hdf5_type<T>(), memory_space.get(), file_space.get(), transfer.get(), values.data()) >= 0;
+  const bool written = write_block(dataset.get(), slab.rank, slab.begin, slab.count, values.data(), transfer.get());
   PetscCall(check(dataset.close() && written, "cannot write dataset " + name + " (disk full?)"));
   std::uint64_t sum = box_checksum(slab, values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));
@@ -412,27 +376,21 @@ PetscErrorCode Hdf5File::write_field_as(const Box &box, const FieldFormat &forma
       for (int i = 0; i < int(slab.count[2]); ++i)
         for (const ConstView &component : components) values.push_back(static_cast<T>(component(i, j, k)));
   PetscCall(write_values(format.name, slab, file_type, values));
-  PetscCall(write_attribute(format.name, "location",
-                            format.plane < 0
-                                ? location_name(format.staggering)
-                                : std::string("wall_") + "xyz"[format.plane] + (format.plane_high ? "max" : "min")));
+  PetscCall(write_attribute(
+      format.name, "location",
+      format.plane < 0 ? location_name(format.staggering) : "wall_" + side_name(format.plane, format.plane_high)));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Hdf5File::write_field(const Box &box, const FieldFormat &format,
                                      const std::vector<ConstView> &components) {
   PetscFunctionBeginUser;
-  switch (format.stored) {
-    case Stored::float32:
-      PetscCall(write_field_as<float>(box, format, H5T_IEEE_F32LE, components));
-      break;
-    case Stored::float64:
-      PetscCall(write_field_as<double>(box, format, H5T_IEEE_F64LE, components));
-      break;
-    case Stored::int32:
-      PetscCall(write_field_as<int>(box, format, H5T_STD_I32LE, components));
-      break;
-  }
+  if (format.stored == Stored::float32)
+    PetscCall(write_field_as<float>(box, format, H5T_IEEE_F32LE, components));
+  else if (format.stored == Stored::float64)
+    PetscCall(write_field_as<double>(box, format, H5T_IEEE_F64LE, components));
+  else
+    PetscCall(write_field_as<int>(box, format, H5T_STD_I32LE, components));
   PetscFunctionReturn(0);
 }
 
@@ -440,12 +398,9 @@ template <class T>
 PetscErrorCode Hdf5File::read_values(const std::string &name, hid_t dataset, const Hyperslab &slab,
                                      std::vector<T> *values) {
   PetscFunctionBeginUser;
-  const Hdf5Space file_space(H5Dget_space(dataset)), memory_space(H5Screate_simple(slab.rank, slab.count, nullptr));
   const Hdf5Property transfer = hdf5_collective();
   values->resize(slab.count[0] * slab.count[1] * slab.count[2]);
-  const bool read =
-      H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, slab.begin, nullptr, slab.count, nullptr) >= 0 &&
-      H5Dread(dataset, hdf5_type<T>(), memory_space.get(), file_space.get(), transfer.get(), values->data()) >= 0;
+  const bool read = read_block(dataset, slab.rank, slab.begin, slab.count, values->data(), transfer.get());
   PetscCall(check(read, "cannot read dataset " + name));
   std::uint64_t sum = box_checksum(slab, *values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));
@@ -496,13 +451,22 @@ PetscErrorCode Hdf5File::read_field(const Box &box, const std::string &name, con
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Hdf5File::write_records(const std::string &name, std::size_t numbers,
-                                       const std::vector<double> &values) {
-  unsigned long long mine = values.size() / numbers, end = 0, all = 0;
+// So many records of this rank among those of all, in the order of the ranks.
+PetscErrorCode Hdf5File::records_of(unsigned long long mine, std::size_t numbers, Hyperslab *slab) const {
+  unsigned long long end = 0, all = 0;
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Scan(&mine, &end, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
   PetscCallMPI(MPI_Allreduce(&mine, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
-  PetscCall(write_values(name, {3, {all, 1, numbers}, {end - mine, 0, 0}, {mine, 1, numbers}}, H5T_IEEE_F64LE, values));
+  *slab = {3, {all, 1, numbers}, {end - mine, 0, 0}, {mine, 1, numbers}};
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode Hdf5File::write_records(const std::string &name, std::size_t numbers,
+                                       const std::vector<double> &values) {
+  Hyperslab slab;
+  PetscFunctionBeginUser;
+  PetscCall(records_of(values.size() / numbers, numbers, &slab));
+  PetscCall(write_values(name, slab, H5T_IEEE_F64LE, values));
   PetscFunctionReturn(0);
 }
 
@@ -523,15 +487,14 @@ PetscErrorCode Hdf5File::read_records(const std::string &name, std::size_t numbe
 }
 
 PetscErrorCode Hdf5File::read_own_records(const std::string &name, std::size_t numbers, std::vector<double> *values) {
-  unsigned long long mine = values->size() / numbers, end = 0, all = 0;
+  Hyperslab slab;
   Hdf5Dataset dataset;
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Scan(&mine, &end, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
-  PetscCallMPI(MPI_Allreduce(&mine, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
+  PetscCall(records_of(values->size() / numbers, numbers, &slab));
   PetscCall(open_dataset(name, &dataset));
-  PetscCall(
-      check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{all, 1, numbers}, name + " belongs to another case"));
-  PetscCall(read_values(name, dataset.get(), {3, {all, 1, numbers}, {end - mine, 0, 0}, {mine, 1, numbers}}, values));
+  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>(slab.total, slab.total + 3),
+                  name + " belongs to another case"));
+  PetscCall(read_values(name, dataset.get(), slab, values));
   PetscFunctionReturn(0);
 }
 

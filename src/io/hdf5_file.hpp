@@ -66,14 +66,9 @@ public:
   template <class T>
   PetscErrorCode read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values);
 
-  PetscErrorCode create_group(const std::string &name);
-  /// `name` stands for `dataset` of another file, whose path is `file` as seen from the directory of this one.
-  PetscErrorCode link(const std::string &name, const std::string &file, const std::string &dataset);
-
   /// Attributes of `object`: a dataset, a group, or "/" for the file.
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::string &value);
-  template <class T>  // double, long
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::vector<T> &value);
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const Real3 &value);
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, double value);
   PetscErrorCode write_attribute(const std::string &object, const std::string &name, long value);
   PetscErrorCode read_attribute(const std::string &object, const std::string &name, std::string *value);
@@ -101,6 +96,7 @@ private:
   PetscErrorCode read_values(const std::string &name, hid_t dataset, const Hyperslab &box, std::vector<T> *values);
   template <class T>
   PetscErrorCode read_field_as(const std::string &name, hid_t dataset, const Hyperslab &box, View field);
+  PetscErrorCode records_of(unsigned long long mine, std::size_t numbers, Hyperslab *slab) const;
   PetscErrorCode write_raw_attribute(const std::string &object, const std::string &name, hid_t type,
                                      const Hdf5Space &space, const void *value);
   PetscErrorCode open_dataset(const std::string &name, Hdf5Dataset *dataset) const;

@@ -3,6 +3,7 @@
 
 #include <hdf5.h>
 
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -48,7 +49,6 @@ private:
 
 using Hdf5FileHandle = Hdf5Handle<H5Fclose>;
 using Hdf5Dataset = Hdf5Handle<H5Dclose>;
-using Hdf5Object = Hdf5Handle<H5Oclose>;
 using Hdf5Space = Hdf5Handle<H5Sclose>;
 using Hdf5Type = Hdf5Handle<H5Tclose>;
 using Hdf5Attribute = Hdf5Handle<H5Aclose>;
@@ -56,27 +56,12 @@ using Hdf5Property = Hdf5Handle<H5Pclose>;
 
 /// The HDF5 type of T, in memory.
 template <class T>
-hid_t hdf5_type();
-template <>
-inline hid_t hdf5_type<float>() {
-  return H5T_NATIVE_FLOAT;
-}
-template <>
-inline hid_t hdf5_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-template <>
-inline hid_t hdf5_type<int>() {
-  return H5T_NATIVE_INT;
-}
-template <>
-inline hid_t hdf5_type<long>() {
-  return H5T_NATIVE_LONG;
-}
-
-template <>
-inline hid_t hdf5_type<unsigned char>() {
-  return H5T_NATIVE_UCHAR;
+hid_t hdf5_type() {
+  if constexpr (std::is_same_v<T, float>) return H5T_NATIVE_FLOAT;
+  if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<T, int>) return H5T_NATIVE_INT;
+  if constexpr (std::is_same_v<T, long>) return H5T_NATIVE_LONG;
+  if constexpr (std::is_same_v<T, unsigned char>) return H5T_NATIVE_UCHAR;
 }
 
 /// A string of fixed length (parallel HDF5 has no others).
@@ -100,6 +85,23 @@ inline Hdf5Property hdf5_collective() {
   Hdf5Property transfer(H5Pcreate(H5P_DATASET_XFER));
   (void)H5Pset_dxpl_mpio(transfer.get(), H5FD_MPIO_COLLECTIVE);
   return transfer;
+}
+
+/// Reads the block of a dataset that begins at `start` and has `count` values along each of its `rank` dimensions.
+template <class T>
+bool read_block(hid_t dataset, int rank, const hsize_t *start, const hsize_t *count, T *values,
+                hid_t transfer = H5P_DEFAULT) {
+  const Hdf5Space file(H5Dget_space(dataset)), memory(H5Screate_simple(rank, count, nullptr));
+  return H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, start, nullptr, count, nullptr) >= 0 &&
+         H5Dread(dataset, hdf5_type<T>(), memory.get(), file.get(), transfer, values) >= 0;
+}
+/// Writes it.
+template <class T>
+bool write_block(hid_t dataset, int rank, const hsize_t *start, const hsize_t *count, const T *values,
+                 hid_t transfer = H5P_DEFAULT) {
+  const Hdf5Space file(H5Dget_space(dataset)), memory(H5Screate_simple(rank, count, nullptr));
+  return H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, start, nullptr, count, nullptr) >= 0 &&
+         H5Dwrite(dataset, hdf5_type<T>(), memory.get(), file.get(), transfer, values) >= 0;
 }
 
 }  // namespace eulastic

@@ -4,6 +4,7 @@
 #include "io/hdf5_handle.hpp"
 
 #include <string>
+#include <vector>
 
 namespace eulastic {
 
@@ -21,5 +22,12 @@ struct Hdf5Input {
 /// Opens a dataset: the one of that `name`; if this is empty `usual`, or else the only one of the file, in any group.
 /// Datasets whose values lie in other files are refused. Returns what is wrong, or nothing.
 std::string open_input(const std::string &file, const std::string &name, const std::string &usual, Hdf5Input *input);
+
+/// From `dataset`, or if this is empty from `velocity` or the only one of the file: one number per cell of a side of
+/// `slow` rows of `fast` cells, row by row, from (slow, fast), the normal velocity into the box, or from (slow, fast,
+/// 3), x, y, z, of which `component`, times `sign`, is taken; a single row may have no dimension of its own. Returns
+/// what is wrong, or nothing.
+std::string read_profile_file(const std::string &path, const std::string &dataset, int slow, int fast, int component,
+                              double sign, std::vector<double> *values);
 
 }  // namespace eulastic

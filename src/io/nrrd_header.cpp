@@ -1,6 +1,7 @@
 #include "io/nrrd_header.hpp"
 
 #include "base/number_rows.hpp"
+#include "base/one_line.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -57,11 +58,6 @@ const std::map<std::string, Type> types = [] {
   return map;
 }();
 
-std::string lower(std::string text) {
-  for (char &c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 constexpr double tilt_of_round_off = 1e-6;  // of a direction: a voxel in the longest row that is accepted
 
 class HeaderReader {
@@ -103,7 +99,7 @@ private:
     if (given == fields_.end()) return {};
     const Words kinds = words_of(given->second);
     const auto spatial = [](const std::string &kind) {
-      const std::string name = lower(kind);
+      const std::string name = lower_case(kind);
       return name == "domain" || name == "space" || name == "none" || name == "???";
     };
     const auto other = std::find_if_not(kinds.begin(), kinds.end(), spatial);
@@ -119,14 +115,14 @@ private:
       return "type \"" + fields_["type"] + "\"; accepted: signed or unsigned integers of 1 to 8 bytes, float, double";
     header_->bytes = type->second.bytes;
     header_->is_float = type->second.is_float;
-    const std::string encoding = lower(fields_["encoding"]);
+    const std::string encoding = lower_case(fields_["encoding"]);
     if (encoding == "gzip" || encoding == "gz")
       header_->encoding = NrrdHeader::Encoding::gzip;
     else if (encoding == "ascii" || encoding == "text" || encoding == "txt")
       header_->encoding = NrrdHeader::Encoding::ascii;
     else if (encoding != "raw")
       return "encoding \"" + encoding + "\"; accepted: raw, gzip, ascii";
-    const std::string endian = lower(fields_["endian"]);
+    const std::string endian = lower_case(fields_["endian"]);
     header_->big_endian = endian == "big";
     if (endian != "big" && endian != "little" &&
         !(endian.empty() && (header_->bytes == 1 || header_->encoding == NrrdHeader::Encoding::ascii)))
@@ -220,7 +216,7 @@ std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
     std::string value = line.substr(colon + 2);
     value.erase(0, value.find_first_not_of(" \t"));
     value.erase(value.find_last_not_of(" \t") + 1);
-    if (!fields.emplace(lower(line.substr(0, colon)), value).second)
+    if (!fields.emplace(lower_case(line.substr(0, colon)), value).second)
       return file + ": field " + line.substr(0, colon) + " is given twice";
   }
   if (header->data < 0 && !(all && is_detached(fields)))

@@ -1,7 +1,6 @@
 #include "io/series.hpp"
 
 #include "io/fail_together.hpp"
-#include "io/text_file.hpp"
 
 #include <unistd.h>
 #include <algorithm>

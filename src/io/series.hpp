@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "io/file_stamp.hpp"
+#include "io/text_file.hpp"
 
 #include <cstdio>
 #include <limits>

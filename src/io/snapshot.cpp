@@ -1,13 +1,11 @@
 #include "io/snapshot.hpp"
 
 #include "base/events.hpp"
+#include "base/one_line.hpp"
 #include "io/text_file.hpp"
 #include "io/vti.hpp"
-#include "io/vtkhdf.hpp"
-#include "io/wall_index.hpp"
 
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -16,9 +14,10 @@
 namespace eulastic {
 namespace {
 
-constexpr const char *index_head =
-    "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
-    "<Grid Name=\"snapshots\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+std::string index_head(const std::string &name) {
+  return "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n<Grid Name=\"" + name +
+         "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+}
 constexpr const char *index_tail = "</Grid>\n</Domain>\n</Xdmf>\n";
 
 // Slowest direction first, as everywhere in XDMF.
@@ -27,16 +26,58 @@ std::string zyx(const std::array<T, 3> &xyz, Text text) {
   return text(xyz[2]) + " " + text(xyz[1]) + " " + text(xyz[0]);
 }
 
-std::string file_name(int n) {
-  char name[32];
-  std::snprintf(name, sizeof name, "snapshot_%06d", n);
-  return name;
-}
+std::string integer(int n) { return std::to_string(n); }
+
+std::string file_name(int n) { return print("snapshot_%06d", n); }
 
 std::string number_type(Stored stored) {
   return stored == Stored::int32     ? "NumberType=\"Int\" Precision=\"4\""
          : stored == Stored::float32 ? "NumberType=\"Float\" Precision=\"4\""
                                      : "NumberType=\"Float\" Precision=\"8\"";
+}
+
+// A mesh of cells of this spacing, with a line end behind each element or without.
+std::string mesh(const Int3 &points, const Real3 &origin, const Real3 &spacing, const char *end) {
+  const std::string triple = "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">";
+  return "<Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" + zyx(points, integer) + "\"/>" + end +
+         "<Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + end + triple + zyx(origin, format_double) + "</DataItem>" + end +
+         triple + zyx(spacing, format_double) + "</DataItem>" + end + "</Geometry>" + end;
+}
+
+// A field of cells in the file of a snapshot.
+std::string attribute(const std::string &name, const SnapshotField &field, const Int3 &cells, const std::string &file) {
+  const bool vector = field.components.size() == 3;
+  return "<Attribute Name=\"" + name + "\" AttributeType=\"" + (vector ? "Vector" : "Scalar") +
+         "\" Center=\"Cell\"><DataItem Dimensions=\"" + zyx(cells, integer) + (vector ? " 3" : "") + "\" " +
+         number_type(field.format.stored) + " Format=\"HDF\">" + file + ".h5:/" + field.format.name +
+         "</DataItem></Attribute>";
+}
+
+// One wall of one snapshot: a plate of cells behind the wall. One without thickness ParaView's older reader cannot.
+std::string one_wall(const Box &box, const std::string &file, const SnapshotField &field) {
+  const FieldFormat &format = field.format;
+  Int3 cells = box.domain_cells(), points{cells[0] + 1, cells[1] + 1, cells[2] + 1};
+  cells[format.plane] = 1;
+  points[format.plane] = 2;
+  Real3 origin{};
+  origin[format.plane] = format.plane_high ? box.domain_shape().length[format.plane] : -box.spacing()[format.plane];
+  return "<Grid Name=\"" + format.name + "\" GridType=\"Uniform\">" + mesh(points, origin, box.spacing(), "") +
+         attribute("wall_shear_stress", field, cells, file) + "</Grid>\n";
+}
+
+// The index of the fields on walls (SnapshotField with a plane) in all snapshots `entries`; empty if there are none.
+std::string wall_index(const Box &box, const std::vector<SnapshotEntry> &entries,
+                       const std::vector<SnapshotField> &fields) {
+  std::string text;
+  for (const SnapshotEntry &entry : entries) {
+    std::string walls;
+    for (const SnapshotField &field : fields)
+      if (field.format.plane >= 0) walls += one_wall(box, entry.name, field);
+    if (walls.empty()) return {};
+    text += "<Grid Name=\"walls\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"" +
+            format_double(entry.time) + "\"/>\n" + walls + "</Grid>\n";
+  }
+  return index_head("walls") + text + index_tail;
 }
 
 // Whether visualisation tools get this field as cell data: staggered fields would be drawn half a cell too high, and
@@ -50,23 +91,11 @@ bool is_drawn(const FieldFormat &format) {
 
 std::string SnapshotWriter::index_entry(const std::string &name, double time,
                                         const std::vector<SnapshotField> &fields) const {
-  const auto integer = [](int n) { return std::to_string(n); };
-  const auto point = [](int n) { return std::to_string(n + 1); };
-  const std::string cells = zyx(domain_->domain_cells(), integer);
-  const std::string triple = "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">";
+  const Int3 &cells = domain_->domain_cells();
   std::string text = "<Grid Name=\"" + name + "\" GridType=\"Uniform\">\n<Time Value=\"" + format_double(time) +
-                     "\"/>\n<Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" +
-                     zyx(domain_->domain_cells(), point) + "\"/>\n<Geometry GeometryType=\"ORIGIN_DXDYDZ\">\n" +
-                     triple + "0 0 0</DataItem>\n" + triple + zyx(domain_->spacing(), format_double) +
-                     "</DataItem>\n</Geometry>\n";
-  for (const SnapshotField &field : fields) {
-    if (!is_drawn(field.format)) continue;
-    const bool vector = field.components.size() == 3;
-    text += "<Attribute Name=\"" + field.format.name + "\" AttributeType=\"" + (vector ? "Vector" : "Scalar") +
-            "\" Center=\"Cell\"><DataItem Dimensions=\"" + cells + (vector ? " 3" : "") + "\" " +
-            number_type(field.format.stored) + " Format=\"HDF\">" + name + ".h5:/" + field.format.name +
-            "</DataItem></Attribute>\n";
-  }
+                     "\"/>\n" + mesh({cells[0] + 1, cells[1] + 1, cells[2] + 1}, {0, 0, 0}, domain_->spacing(), "\n");
+  for (const SnapshotField &field : fields)
+    if (is_drawn(field.format)) text += attribute(field.format.name, field, cells, name) + "\n";
   return text + "</Grid>\n";
 }
 
@@ -87,7 +116,7 @@ PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
   if (!same_directory || domain_->rank() > 0) PetscFunctionReturn(0);
   std::stringstream text;
   text << std::ifstream(directory_ + "/snapshots.xdmf").rdbuf();
-  const std::string head = index_head, entry_tail = "</Grid>\n";
+  const std::string head = index_head("snapshots"), entry_tail = "</Grid>\n";
   std::size_t end = text.str().compare(0, head.size(), head) == 0 ? head.size() : 0;
   for (int n = 0; n < count && end != 0; ++n) {
     const std::size_t tail = text.str().find(entry_tail, end);
@@ -96,8 +125,7 @@ PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
   if (end != 0) index_ = text.str().substr(head.size(), end - head.size());
   std::error_code error;  // one that stays is written over
   for (int n = count; std::filesystem::remove(directory_ + "/" + file_name(n) + ".h5", error); ++n)
-    for (const char *shown : {".vtkhdf", ".vti"})
-      std::filesystem::remove(directory_ + "/" + file_name(n) + shown, error);
+    std::filesystem::remove(directory_ + "/" + file_name(n) + ".vti", error);
   PetscFunctionReturn(0);
 }
 
@@ -111,8 +139,8 @@ PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<S
   PetscCall(file.write_attribute("/", "version", std::string(EULASTIC_VERSION)));
   PetscCall(file.write_attribute("/", "time", time));
   PetscCall(file.write_attribute("/", "step", step));
-  PetscCall(file.write_attribute("/", "spacing", std::vector<double>(h.begin(), h.end())));
-  PetscCall(file.write_attribute("/", "length", std::vector<double>(length.begin(), length.end())));
+  PetscCall(file.write_attribute("/", "spacing", h));
+  PetscCall(file.write_attribute("/", "length", length));
   for (const SnapshotField &field : fields) PetscCall(file.write_field(*domain_, field.format, field.components));
   PetscCall(file.commit());
   std::vector<SnapshotField> drawn, on_walls;
@@ -120,16 +148,15 @@ PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<S
     if (is_drawn(field.format)) drawn.push_back(field);
     if (field.format.plane >= 0) on_walls.push_back(field);
   }
-  if (shown_ == SnapshotFormat::vtkhdf) PetscCall(write_vtkhdf(*domain_, directory_, name, drawn));
-  if (shown_ == SnapshotFormat::vti) PetscCall(write_vti(*domain_, directory_, name, time, drawn, on_walls));
+  if (vti_) PetscCall(write_vti(*domain_, directory_, name, time, drawn, on_walls));
   ++count_;
   index_ += index_entry(name, time, fields);
-  PetscCall(write_text_file(domain_->comm(), directory_ + "/snapshots.xdmf", index_head + index_ + index_tail));
+  PetscCall(
+      write_text_file(domain_->comm(), directory_ + "/snapshots.xdmf", index_head("snapshots") + index_ + index_tail));
   const std::vector<SnapshotEntry> all = entries();
   const std::string walls = wall_index(*domain_, all, fields);
   if (!walls.empty()) PetscCall(write_text_file(domain_->comm(), directory_ + "/walls.xdmf", walls));
-  if (shown_ == SnapshotFormat::vtkhdf) PetscCall(write_vtkhdf_series(domain_->comm(), directory_, all));
-  if (shown_ == SnapshotFormat::vti) PetscCall(write_pvd(domain_->comm(), directory_, all));
+  if (vti_) PetscCall(write_pvd(domain_->comm(), directory_, all));
   PetscFunctionReturn(0);
 }
 

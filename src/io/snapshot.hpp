@@ -1,11 +1,10 @@
 // snapshot_NNNNNN.h5, a picture of the fields at one time, and snapshots.xdmf, which shows them all to ParaView; on
-// request the same as VTKHDF or as VTK's XML image data.
+// request the same as VTK's XML image data.
 #pragma once
 
 #include "base/petsc.hpp"
 #include "grid/domain.hpp"
 #include "io/hdf5_file.hpp"
-#include "io/snapshot_format.hpp"
 
 namespace eulastic {
 
@@ -23,8 +22,9 @@ struct SnapshotEntry {
 /// Numbers snapshots from 0 and remembers them for the index.
 class SnapshotWriter {
 public:
-  SnapshotWriter(const Domain &domain, std::string directory, SnapshotFormat shown)
-      : domain_(&domain), directory_(std::move(directory)), shown_(shown) {}
+  /// `vti`: also writes each snapshot as a file of VTK's XML image data.
+  SnapshotWriter(const Domain &domain, std::string directory, bool vti)
+      : domain_(&domain), directory_(std::move(directory)), vti_(vti) {}
 
   /// Collective, before the first write(): goes on after `count` snapshots. Where they are in this directory, the
   /// index goes on too, and later ones are removed.
@@ -40,7 +40,7 @@ private:
 
   const Domain *domain_;
   std::string directory_;
-  SnapshotFormat shown_;
+  bool vti_;
   int count_ = 0;
   std::string index_;  ///< one XDMF grid per snapshot
 };

@@ -1,6 +1,7 @@
 #include "io/stl_file.hpp"
 
 #include "base/number_rows.hpp"
+#include "base/one_line.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -15,10 +16,6 @@ namespace {
 
 constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
 constexpr std::size_t most_triangles = 500'000'000;
-
-void lower(std::string *text) {
-  for (char &c : *text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-}
 
 std::uintmax_t size_of(const std::string &file) {
   std::error_code error;
@@ -122,7 +119,7 @@ private:
   }
   bool next(std::string *word) {
     if (!(stream_ >> *word)) return false;
-    lower(word);
+    *word = lower_case(*word);
     return true;
   }
   bool expect(const char *wanted) {
@@ -160,7 +157,7 @@ bool begins_as_text(std::ifstream &stream, std::uintmax_t size) {
   stream.read(bytes, header_bytes);
   std::string text(bytes, static_cast<std::size_t>(stream.gcount()));
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n", mark_length(text)), text.size());
-  lower(&text);
+  text = lower_case(text);
   stream.clear();
   stream.seekg(static_cast<std::streamoff>(begin));
   return text.compare(begin, 5, "solid") == 0 && text.find('\0') == std::string::npos;

@@ -9,24 +9,10 @@ namespace eulastic {
 namespace {
 
 Json body_json(const BodyRecord &b) {
-  return Json()
-      .add("id", b.id)
-      .add("species", b.species)
-      .add("centroid", b.centroid)
-      .add("velocity", b.velocity)
-      .add("volume", b.volume)
-      .add("taylor_deformation", b.taylor_deformation)
-      .add("inclination", b.inclination)
-      .add("elastic_energy", b.elastic_energy)
-      .add("largest_stretch", b.largest_stretch)
-      .add("rest_deformation", b.rest_deformation)
-      .add("surface_area", b.surface_area)
-      .add("shear_energy", b.shear_energy)
-      .add("area_energy", b.area_energy)
-      .add("bending_energy", b.bending_energy)
-      .add("turning_rate", b.turning_rate)
-      .add("force", b.force)
-      .add("torque", b.torque);
+  Json json;
+  json.add("id", b.id).add("species", b.species);
+  for_numbers(b, true, true, false, [&](const char *name, const auto &value) { json.add(name, value); });
+  return json;
 }
 
 }  // namespace
@@ -92,9 +78,7 @@ std::string summary_text(const Summary &s) {
 }
 
 PetscErrorCode write_summary(MPI_Comm comm, const std::string &path, const Summary &summary) {
-  PetscFunctionBeginUser;
-  PetscCall(write_text_file(comm, path, summary_text(summary)));
-  PetscFunctionReturn(0);
+  return write_text_file(comm, path, summary_text(summary));
 }
 
 }  // namespace eulastic

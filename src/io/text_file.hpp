@@ -3,6 +3,8 @@
 
 #include "base/petsc.hpp"
 
+#include <sys/types.h>
+
 #include <string>
 
 namespace eulastic {
@@ -16,5 +18,18 @@ std::string temporary_name(const std::string &path);
 std::string replace_file(const std::string &path);
 /// Collective; rank 0's `text` is written beside, synced and renamed.
 PetscErrorCode write_text_file(MPI_Comm comm, const std::string &path, const std::string &text);
+
+class FileStamp {
+public:
+  /// Notes which file `path` is, and how long.
+  void take(const std::string &path);
+  /// Empty if `path` is the same file and as long as it was when take() was called; else one line.
+  std::string difference(const std::string &path) const;
+
+private:
+  dev_t device_ = 0;
+  ino_t file_ = 0;
+  off_t bytes_ = 0;
+};
 
 }  // namespace eulastic

@@ -1,6 +1,7 @@
 #include "io/volume_file.hpp"
 
 #include "base/number_rows.hpp"
+#include "base/one_line.hpp"
 #include "io/hdf5_input.hpp"
 #include "io/stl_file.hpp"
 
@@ -30,8 +31,7 @@ std::string find_volume(const std::string &path, VolumeFormat *format, std::stri
   std::ifstream stream(*file, std::ios::binary);
   stream.read(magic, sizeof magic - 1);
   if (!stream && stream.gcount() == 0) return *file + " is empty or cannot be read";
-  std::string suffix = fs::path(*file).extension().string();
-  for (char &c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string suffix = lower_case(fs::path(*file).extension().string());
   if (is_hdf5(*file))
     *format = VolumeFormat::hdf5;
   else if (std::strncmp(magic + mark_length(magic), "NRRD000", 7) == 0)
@@ -57,11 +57,8 @@ std::string VolumeFile::set_count(const std::vector<unsigned long long> &slowest
     bytes *= double(n);
   }
   if (bytes > most_bytes || bytes > 9e18) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  ": %d x %d x %d voxels do not fit into what the file holds, it is truncated or damaged", count_[0],
-                  count_[1], count_[2]);
-    return file_ + text;
+    return file_ + print(": %d x %d x %d voxels do not fit into what the file holds, it is truncated or damaged",
+                         count_[0], count_[1], count_[2]);
   }
   return {};
 }
@@ -82,10 +79,8 @@ std::string VolumeFile::read(const Int3 &begin, const Int3 &end, double *fractio
     for (int j = begin[1]; j < end[1]; ++j)
       for (int i = begin[0]; i < end[0]; ++i, ++value)
         if (!(*value >= 0 && *value <= 1)) {
-          char text[128];
-          std::snprintf(text, sizeof text, ": voxel [%d, %d, %d] is %.9g; accepted: 0 ... 1, or integers as a mask", k,
-                        j, i, *value);
-          return file_ + text;
+          return file_ +
+                 print(": voxel [%d, %d, %d] is %.9g; accepted: 0 ... 1, or integers as a mask", k, j, i, *value);
         }
   return {};
 }

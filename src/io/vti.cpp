@@ -1,6 +1,5 @@
 #include "io/vti.hpp"
 
-#include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 #include "io/text_file.hpp"
 
@@ -26,12 +25,6 @@ std::size_t bytes_of(Stored stored) { return stored == Stored::float64 ? 8 : 4; 
 
 const char *vtk_type(Stored stored) {
   return stored == Stored::int32 ? "Int32" : stored == Stored::float32 ? "Float32" : "Float64";
-}
-
-hid_t memory_type(Stored stored) {
-  return stored == Stored::int32     ? hdf5_type<int>()
-         : stored == Stored::float32 ? hdf5_type<float>()
-                                     : hdf5_type<double>();
 }
 
 // Copies a snapshot of HDF5 into a .vti file, plane by plane. One rank does, without MPI.
@@ -105,15 +98,9 @@ private:
     const std::uint64_t bytes = bytes_of(array);
     const auto less = static_cast<std::uint32_t>(bytes);
     if (!(is_large() ? write(&bytes, sizeof bytes) : write(&less, sizeof less))) return false;
-    switch (array.stored) {
-      case Stored::float32:
-        return write_planes<float>(array);
-      case Stored::float64:
-        return write_planes<double>(array);
-      case Stored::int32:
-        return write_planes<int>(array);
-    }
-    return false;
+    return array.stored == Stored::float32   ? write_planes<float>(array)
+           : array.stored == Stored::float64 ? write_planes<double>(array)
+                                             : write_planes<int>(array);
   }
 
   template <class T>
@@ -137,12 +124,8 @@ private:
             std::vector<T> *values) const {
     hsize_t start[4] = {}, size[4] = {0, 0, 0, array.components};
     for (int d = 0; d < 3; ++d) start[d] = hsize_t(first[d]), size[d] = hsize_t(count[d]);
-    const int rank = array.components > 1 ? 4 : 3;
     const Hdf5Dataset dataset(H5Dopen2(from_.get(), name.c_str(), H5P_DEFAULT));
-    const Hdf5Space file_space(H5Dget_space(dataset.get())), memory_space(H5Screate_simple(rank, size, nullptr));
-    return H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start, nullptr, size, nullptr) >= 0 &&
-           H5Dread(dataset.get(), memory_type(array.stored), memory_space.get(), file_space.get(), H5P_DEFAULT,
-                   values->data()) >= 0;
+    return read_block(dataset.get(), array.components > 1 ? 4 : 3, start, size, values->data());
   }
 
   // The stress on a wall of the box where it is larger than what the cell beside it holds.

@@ -6,9 +6,27 @@
 // all is computed for the smaller part of the cell, where no terms cancel, however small a component of m is.
 #pragma once
 
-#include "kernels/cube_root.hpp"
+#include "kernels/interface_normal.hpp"
+#include "kernels/isa.hpp"
+
+#include <cstdint>
 
 namespace eulastic::kernels {
+
+inline constexpr double cube_root_flops = 17;
+
+/// Returns x^(1/3) for normal x > 0 with a relative error below 2e-14.
+EULASTIC_INLINE double cube_root(double x) noexcept {
+  constexpr std::uint64_t two_52 = 0x4330000000000000;
+  const double upper = __builtin_bit_cast(double, (__builtin_bit_cast(std::uint64_t, x) >> 32) | two_52) - 0x1p52;
+  const double third = fma(upper, 1. / 3, 715094163 + 0x1p52);  // the last bits hold the nearest integer
+  double t = __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, third) << 32);
+  for (int step = 0; step < 2; ++step) {
+    const double cube = t * t * t;
+    t *= fma(2, x, cube) / fma(2, cube, x);
+  }
+  return t;
+}
 
 inline constexpr double plane_constant_flops_2d = 10, plane_constant_flops_3d = 95 + cube_root_flops;
 inline constexpr double plane_flux_flops_2d = 25, plane_flux_flops_3d = 60;
@@ -101,6 +119,18 @@ EULASTIC_INLINE double plane_flux(double phi, double alpha, double towards, doub
   const double volume = courant * volume_below<Dim>(alpha_before, m * courant, across1, across2);
   const double flux = m + across1 + across2 > 0 ? volume : courant * phi;
   return smaller(larger(flux, larger(courant - (1 - phi), 0)), smaller(courant, phi));
+}
+
+/// Returns the area of the plane in a cell with 0 < phi < 1. `face`: areas of the cell's faces across every direction.
+template <int Dim>
+EULASTIC_INLINE double plane_area(const double *q, const std::ptrdiff_t *stride, const double *face) noexcept {
+  const InterfaceNormal n = interface_normal<Dim>(q, stride[0], stride[1], stride[2]);
+  const double m[3] = {__builtin_fabs(n.a), __builtin_fabs(n.b), __builtin_fabs(n.c)};
+  if (!(m[0] + m[1] + m[2] > 0)) return 0;
+  const double slope = volume_slope<Dim>(plane_constant<Dim>(*q, m[0], m[1], m[2]), m[0], m[1], m[2]);
+  double square = 0;
+  for (int d = 0; d < Dim; ++d) square = fma(m[d] * face[d], m[d] * face[d], square);
+  return slope * __builtin_sqrt(square);
 }
 
 }  // namespace eulastic::kernels

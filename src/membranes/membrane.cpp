@@ -1,11 +1,10 @@
 #include "membranes/membrane.hpp"
 
 #include "base/events.hpp"
-#include "base/exact_sum.hpp"
 #include "field/sides.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
-#include "kernels/upwind5.hpp"
+#include "kernels/weno5.hpp"
 #include "membranes/membrane_tensor.hpp"
 #include "membranes/smooth_row.hpp"
 

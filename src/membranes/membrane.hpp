@@ -4,8 +4,8 @@
 
 #include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
-#include "field/phase_place.hpp"
-#include "field/surface_sample.hpp"
+#include "field/phase.hpp"
+#include "field/surface_marker.hpp"
 #include "membranes/bending.hpp"
 #include "membranes/surface_cells.hpp"
 #include "membranes/surface_markers.hpp"

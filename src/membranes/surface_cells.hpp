@@ -4,7 +4,6 @@
 
 #include "base/petsc.hpp"
 #include "field/phase.hpp"
-#include "field/phase_place.hpp"
 
 namespace eulastic {
 

@@ -4,8 +4,7 @@
 #include "base/exact_sum.hpp"
 #include "bodies/body_sums.hpp"
 #include "bodies/unwrap.hpp"
-#include "grid/domain.hpp"
-#include "kernels/plane_area.hpp"
+#include "kernels/plane.hpp"
 
 #include <petscblaslapack.h>
 #include <algorithm>

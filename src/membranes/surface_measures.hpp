@@ -4,7 +4,7 @@
 #include "base/petsc.hpp"
 #include "bodies/body_owners.hpp"
 #include "field/phase.hpp"
-#include "field/surface_sample.hpp"
+#include "field/surface_marker.hpp"
 #include "grid/domain.hpp"
 
 namespace eulastic {

@@ -49,8 +49,9 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   const int held = found[0];
   if (held >= 0)
     flow_.stop_reason = "-species " + flow_.now.phases[held / 6].species + ": a body is within " +
-                        std::to_string(free_layers) + " cells of the open boundary " + "xyz"[held % 6 / 2] +
-                        (held % 2 ? "max" : "min") + "; accepted: bodies that stay further inside, or a longer box";
+                        std::to_string(free_layers) + " cells of the open boundary " +
+                        side_name(held % 6 / 2, held % 2 != 0) +
+                        "; accepted: bodies that stay further inside, or a longer box";
   if (held < 0 && found[3] > 0) PetscCall(take_out_boxed(leaving));
   if (held < 0 && found[1] > 0) PetscCall(take_out_bodies(true));
   if (held < 0 && found[2] > 0 && flow_.now.travel_since_labels == 0)

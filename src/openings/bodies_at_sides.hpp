@@ -7,8 +7,6 @@
 #include "parts/flow.hpp"
 #include "parts/flow_part.hpp"
 
-#include <map>
-
 namespace eulastic {
 
 class BodiesAtSides final : public FlowPart {

@@ -1,8 +1,8 @@
 #include "openings/body_copy.hpp"
 
+#include "base/deliver.hpp"
 #include "bodies/labels.hpp"
 #include "field/sides.hpp"
-#include "grid/domain.hpp"
 
 #include <algorithm>
 
@@ -63,7 +63,7 @@ PetscErrorCode copy_bodies(const Domain &domain, GhostExchange &exchange, const 
   const int dimension = domain.dimension();
   constexpr int head = 6, width = head + BodyCopy::points;  // label, phase, place, phi, B
   const Int3 &begin = domain.layout().begin;
-  std::vector<double> mine;
+  std::vector<double> all;
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < phases->size(); ++p) {
     Phase &phase = (*phases)[p];
@@ -76,23 +76,15 @@ PetscErrorCode copy_bodies(const Domain &domain, GhostExchange &exchange, const 
       const int label = whose(phase, dimension, at, labels);
       if (label == 0) return;
       const BodyCells cells{phase.label[0], phase.fraction[0]};
-      mine.insert(mine.end(), {double(label), double(p), double(begin[0] + i), double(begin[1] + j),
-                               double(begin[2] + k), cells(i, j, k) > 0 ? phase.fraction[0](i, j, k) : -1});
-      const std::size_t end = mine.size() + BodyCopy::points;
-      for_each_point(phase.tensor, [&](int c, const Int3 &o) {
-        mine.push_back(phase.tensor.field[c](i + o[0], j + o[1], k + o[2]));
-      });
-      mine.resize(end, 0);
+      all.insert(all.end(), {double(label), double(p), double(begin[0] + i), double(begin[1] + j), double(begin[2] + k),
+                             cells(i, j, k) > 0 ? phase.fraction[0](i, j, k) : -1});
+      const std::size_t end = all.size() + BodyCopy::points;
+      for_each_point(phase.tensor,
+                     [&](int c, const Int3 &o) { all.push_back(phase.tensor.field[c](i + o[0], j + o[1], k + o[2])); });
+      all.resize(end, 0);
     });
   }
-  int ranks, count = static_cast<int>(mine.size());
-  PetscCallMPI(MPI_Comm_size(domain.comm(), &ranks));
-  std::vector<int> counts(ranks), begins(ranks + 1, 0);
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, domain.comm()));
-  for (int r = 0; r < ranks; ++r) begins[r + 1] = begins[r] + counts[r];
-  std::vector<double> all(begins[ranks]);
-  PetscCallMPI(MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE,
-                              domain.comm()));
+  PetscCall(gather_all(domain.comm(), &all));
   bodies->assign(labels.size(), {});
   for (std::size_t b = 0; b < labels.size(); ++b) (*bodies)[b].label = labels[b];
   for (const double *v = all.data(); v < all.data() + all.size(); v += width) {

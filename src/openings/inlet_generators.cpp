@@ -1,5 +1,6 @@
 #include "openings/inlet_generators.hpp"
 
+#include "base/deliver.hpp"
 #include "base/exact_sum.hpp"
 #include "bodies/labels.hpp"
 #include "field/fed_velocity.hpp"
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace eulastic {
 
@@ -40,9 +40,7 @@ void InletGenerators::for_cells(const Box &box, const Stretch &stretch, const Vi
     from[d] = std::max(0, box.domain_cells()[d] - deep - begin);
   else
     to[d] = std::min(to[d], deep - begin);
-  for (int k = from[2]; k < to[2]; ++k)
-    for (int j = from[1]; j < to[1]; ++j)
-      for (int i = from[0]; i < to[0]; ++i) visit(i, j, k);
+  for_points({from, to}, visit);
 }
 
 // Rigid bodies are the same all along a stretch.
@@ -65,7 +63,7 @@ PetscErrorCode InletGenerators::check_lumen() const {
   for (std::size_t s = 0; s < stretches_.size(); ++s)
     if (change[s] > same)
       flow_.stop_reason =
-          std::string("-boundary_") + "xyz"[stretches_[s].d] + (stretches_[s].high ? "max" : "min") +
+          "-boundary_" + side_name(stretches_[s].d, stretches_[s].high != 0) +
           "_generator_length: the lumen changes along the inlet generator; accepted: a stretch with a constant lumen";
   PetscFunctionReturn(0);
 }
@@ -149,15 +147,10 @@ PetscErrorCode InletGenerators::start() {
 }
 
 PetscErrorCode InletGenerators::set_inside(const std::map<int, int> &here) {
-  std::vector<int> some, all, counts(flow_.domain.ranks()), begins(flow_.domain.ranks() + 1, 0);
+  std::vector<int> all;
   PetscFunctionBeginUser;
-  for (const auto &[label, stretch] : here) some.insert(some.end(), {label, stretch});
-  const int count = static_cast<int>(some.size());
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, flow_.domain.comm()));
-  std::partial_sum(counts.begin(), counts.end(), begins.begin() + 1);
-  all.resize(begins.back());
-  PetscCallMPI(MPI_Allgatherv(some.data(), count, MPI_INT, all.data(), counts.data(), begins.data(), MPI_INT,
-                              flow_.domain.comm()));
+  for (const auto &[label, stretch] : here) all.insert(all.end(), {label, stretch});
+  PetscCall(gather_all(flow_.domain.comm(), &all));
   inside_.clear();
   for (std::size_t n = 0; n < all.size(); n += 2) {
     int &stretch = inside_.try_emplace(all[n], all[n + 1]).first->second;

@@ -7,7 +7,6 @@
 #include "parts/flow_part.hpp"
 
 #include <map>
-#include <string>
 #include <vector>
 
 namespace eulastic {

@@ -35,22 +35,18 @@ bool leaves_box(const BodyInBox &body) {
   for (const auto [d, high] : box.sides())
     at_open_side = at_open_side || (box.is_open(d, high) && has_solid(box, phi, d, high, free_layers, 0));
   if (!at_open_side || leave_whole(body.phase->material)) return at_open_side;
-  const auto [begin, end] = away_from_open_sides(box, free_layers);
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j)
-      for (int i = begin[0]; i < end[0]; ++i)
-        if (phi(i, j, k) > BodyCells::threshold) return false;
-  return true;
+  bool leaves = true;
+  for_points(away_from_open_sides(box, free_layers),
+             [&](int i, int j, int k) { leaves = leaves && !(phi(i, j, k) > BodyCells::threshold); });
+  return leaves;
 }
 
 void mark_staying(const Box &box, int layers, const Phase &phase, std::map<int, Leaving> *leaves) {
   const BodyCells cells{phase.label[0], phase.fraction[0]};
-  const auto [begin, end] = away_from_open_sides(box, layers);
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j)
-      for (int i = begin[0]; i < end[0]; ++i)
-        if (const int label = static_cast<int>(cells(i, j, k)); label > 0)
-          if (const auto found = leaves->find(label); found != leaves->end()) found->second = Leaving::stays;
+  for_points(away_from_open_sides(box, layers), [&](int i, int j, int k) {
+    if (const int label = static_cast<int>(cells(i, j, k)); label > 0)
+      if (const auto found = leaves->find(label); found != leaves->end()) found->second = Leaving::stays;
+  });
 }
 
 void mark_leaving(const Box &box, int d, bool high, int layers, bool whole, Phase *phase,

@@ -3,7 +3,7 @@
 #include "base/exact_sum.hpp"
 #include "field/open_sides.hpp"
 #include "flow/correction.hpp"
-#include "parts/carried_state.hpp"
+#include "parts/state.hpp"
 #include "rigid/rigid_surfaces.hpp"
 
 namespace eulastic {

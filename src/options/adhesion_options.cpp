@@ -1,4 +1,4 @@
-#include "options/adhesion_options.hpp"
+#include "options/option_rows.hpp"
 
 namespace eulastic {
 namespace {

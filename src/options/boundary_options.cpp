@@ -1,4 +1,4 @@
-#include "options/boundary_options.hpp"
+#include "options/option_rows.hpp"
 
 namespace eulastic {
 namespace {
@@ -33,7 +33,7 @@ class BoundaryRows {
 public:
   BoundaryRows(Rows &rows, Config &config, int d, int high)
       : rows_(rows), config_(config), spec_(config.openings[d][high]), d_(d), high_(high), first_(rows.rows.size()) {
-    rows.prefix = std::string("boundary_") + "xyz"[d] + (high ? "max" : "min") + "_";
+    rows.prefix = "boundary_" + side_name(d, high != 0) + "_";
   }
   ~BoundaryRows() { rows_.prefix.clear(); }
 
@@ -50,7 +50,7 @@ public:
       if (config.boundary.is(SideKind::inflow, d, high)) return spec.velocity;
       if (!spec.velocity.empty() && !read_reals(spec.velocity, any_number, of_wall.data(), 3).empty())
         return spec.velocity;
-      return to_text(of_wall[0]) + "," + to_text(of_wall[1]) + "," + to_text(of_wall[2]);
+      return list(of_wall.data(), 3, to_text);
     };
     rows_.real("angular_frequency", spec_.frequency, not_negative, "rad/time",
                "angular frequency of the velocity or the flow rate");

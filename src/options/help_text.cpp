@@ -1,10 +1,11 @@
 #include "options/help_text.hpp"
 
+#include "base/one_line.hpp"
 #include "io/option_values.hpp"
-#include "options/not_supported.hpp"
 #include "options/option_table.hpp"
 #include "options/petsc_options.hpp"
 #include "options/renamed_options.hpp"
+#include "options/unknown_option.hpp"
 
 #include <petscsys.h>
 
@@ -47,11 +48,6 @@ std::string default_text(const Option &option) {
 
 std::string remarks(const Option &option) {
   return option.doc + (option.only_with.empty() ? "" : "; only with " + option.only_with);
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 // A cell of a table.

@@ -4,6 +4,7 @@
 
 #include "io/option_values.hpp"
 #include "options/option_table.hpp"
+#include "scene/config.hpp"
 
 #include <algorithm>
 
@@ -17,6 +18,14 @@ inline bool any_file(const std::string &) { return true; }
 inline std::string several(std::size_t count, const std::string &noun, const Range &range) {
   return (count == 1 ? (noun[0] == 'i' ? "an " : "a ") + noun : std::to_string(count) + " " + noun + "s") +
          range.text() + (count == 1 ? "" : ", separated by commas");
+}
+
+/// "1,2,3" of so many values.
+template <class T, class Text>
+std::string list(const T *values, std::size_t count, const Text &text) {
+  Names items;
+  for (std::size_t i = 0; i < count; ++i) items.push_back(text(values[i]));
+  return join(items, ",");
 }
 
 // Makes rows from members.
@@ -39,11 +48,7 @@ public:
     Option &row = add(name, unit, doc);
     row.accepted = several(count, "number", range);
     row.read = [=](const std::string &value) { return read_reals(value, range, target, count); };
-    row.text = [=] {
-      Names items;
-      for (std::size_t i = 0; i < count; ++i) items.push_back(to_text(target[i]));
-      return join(items, ",");
-    };
+    row.text = [=] { return list(target, count, to_text); };
     return row;
   }
   Option &real(const std::string &name, double &target, const Range &range, const std::string &unit,
@@ -60,11 +65,7 @@ public:
     Option &row = add(name, "", doc);
     row.accepted = several(count, "integer", range);
     row.read = [=](const std::string &value) { return read_integers(value, range, target, count); };
-    row.text = [=] {
-      Names items;
-      for (std::size_t i = 0; i < count; ++i) items.push_back(std::to_string(target[i]));
-      return join(items, ",");
-    };
+    row.text = [=] { return list(target, count, [](int n) { return std::to_string(n); }); };
     return row;
   }
   Option &integer(const std::string &name, long &target, const Range &range, const std::string &doc) {
@@ -127,16 +128,31 @@ public:
     for (std::size_t r = first; r < rows.size(); ++r) rows[r].may_change = true;
   }
 
+  /// The rows from `first` on apply only while `applies` holds, which `only_with` says.
+  void limit(std::size_t first, const std::string &only_with, const std::function<bool()> &applies) {
+    for (std::size_t r = first; r < rows.size(); ++r) {
+      rows[r].only_with = only_with;
+      rows[r].applies = applies;
+    }
+  }
   /// The rows from `first` on apply only while `target` has one of the `wanted` values. `names`: values of `-option`.
   template <class T>
   void restrict(std::size_t first, const std::string &option, T &target, const Names &names, std::vector<T> wanted) {
     Names text;
     for (T value : wanted) text.push_back(names[static_cast<int>(value)]);
-    for (std::size_t r = first; r < rows.size(); ++r) {
-      rows[r].only_with = "-" + option + " " + join(text, " or ");
-      rows[r].applies = [&target, wanted] { return std::find(wanted.begin(), wanted.end(), target) != wanted.end(); };
-    }
+    limit(first, "-" + option + " " + join(text, " or "),
+          [&target, wanted] { return std::find(wanted.begin(), wanted.end(), target) != wanted.end(); });
   }
 };
+
+/// Pairs that -adhesion names, of species that are known. Returns what is wrong, or nothing.
+std::string read_adhesion(const std::string &value, Config *config);
+void add_adhesion(Rows &rows, Config &config);
+
+/// The name of the species is the prefix. With `from_state` the shape need not be given.
+void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state);
+
+/// Kinds of all boundaries, and what is prescribed on them.
+void add_boundaries(Rows &rows, Config &config);
 
 }  // namespace eulastic

@@ -1,5 +1,6 @@
 #include "options/option_source.hpp"
 
+#include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 #include "io/option_values.hpp"
 #include "options/option_table.hpp"
@@ -18,8 +19,7 @@ namespace {
 bool is_name(const std::string &word) {
   if (word.size() < 2 || word[0] != '-' || std::isdigit(static_cast<unsigned char>(word[1])) || word[1] == '.')
     return false;
-  std::string start = word.substr(1, word.find(',') - 1);
-  std::transform(start.begin(), start.end(), start.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string start = lower_case(word.substr(1, word.find(',') - 1));
   return start != "inf" && start != "infinity" && start != "nan";
 }
 

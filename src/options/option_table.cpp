@@ -1,11 +1,8 @@
 #include "options/option_table.hpp"
 
-#include "options/adhesion_options.hpp"
-#include "options/boundary_options.hpp"
 #include "options/option_rows.hpp"
 #include "options/petsc_options.hpp"
 #include "options/renamed_options.hpp"
-#include "options/species_options.hpp"
 
 #include <set>
 
@@ -163,7 +160,7 @@ void add_samples(Rows &rows, Config &config) {
   probes.read = [&samples](const std::string &value) { return read_points(value, &samples.probes); };
   probes.text = [&samples] {
     Names points;
-    for (const Real3 &p : samples.probes) points.push_back(to_text(p[0]) + "," + to_text(p[1]) + "," + to_text(p[2]));
+    for (const Real3 &p : samples.probes) points.push_back(list(p.data(), 3, to_text));
     return join(points, ":");
   };
   for (int d = 0; d < 3; ++d) add_profile(rows, samples.profile[d], d);
@@ -190,9 +187,9 @@ void add_output(Rows &rows, Config &config) {
              "fields in snapshots");
   rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"}, "precision of snapshots");
   rows.choice(
-      "snapshot_format", output.snapshot_format, {"xdmf", "vtkhdf", "vti"},
-      "xdmf: one index of all snapshots; vtkhdf: also a file for each, for ParaView 5.12 and later; vti: also a "
-      "file for each that every version of VTK and ParaView reads, with the wall shear stress always");
+      "snapshot_format", output.snapshot_vti, {"xdmf", "vti"},
+      "xdmf: one index of all snapshots; vti: also a file for each that every version of VTK and ParaView reads, with "
+      "the wall shear stress always");
   rows.real("series_interval", output.series_interval, not_negative, "time", "time between rows of series.csv");
   rows.zero_is("auto");
   rows.rows.back().default_note = "auto: time_end/200";
@@ -209,10 +206,7 @@ void add_checkpoints(Rows &rows, Config &config) {
   rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
             "wall time between checkpoints; off: only by simulated time and at the end");
   rows.zero_is("off");
-  for (std::size_t r = regular; r < rows.rows.size(); ++r) {
-    rows.rows[r].only_with = "-checkpoint_keep > 0";
-    rows.rows[r].applies = [&checkpoint] { return checkpoint.keep > 0; };
-  }
+  rows.limit(regular, "-checkpoint_keep > 0", [&checkpoint] { return checkpoint.keep > 0; });
   rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
                "number of checkpoints that are kept; a complete run leaves one of its end, with 0 none");
   rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",

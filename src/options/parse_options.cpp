@@ -1,10 +1,13 @@
 #include "options/parse_options.hpp"
 
 #include "base/one_line.hpp"
+#include "base/rank_zero.hpp"
+#include "io/checksum.hpp"
+#include "io/nrrd_header.hpp"
 #include "io/option_values.hpp"
-#include "options/adhesion_options.hpp"
+#include "io/volume_file.hpp"
 #include "options/help_text.hpp"
-#include "options/not_supported.hpp"
+#include "options/option_rows.hpp"
 #include "options/option_source.hpp"
 #include "options/option_table.hpp"
 #include "options/petsc_options.hpp"
@@ -15,6 +18,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -39,8 +43,7 @@ std::string read_species(const std::vector<Source> &sources, Config *config) {
   std::vector<std::string> names;
   std::string wrong = read_words(given->value, {}, &names);
   for (const std::string &name : names) {
-    std::string first = name.substr(0, name.find('_'));
-    std::transform(first.begin(), first.end(), first.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string first = lower_case(name.substr(0, name.find('_')));
     if (!std::isalpha(static_cast<unsigned char>(name[0])) ||
         !std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; }))
       wrong = "\"" + name + "\" is not a name of letters, digits and _ that begins with a letter";
@@ -285,10 +288,6 @@ std::string parse_into(const std::vector<std::string> &arguments, ParseResult *r
   return wrong;
 }
 
-}  // namespace
-
-namespace {
-
 // What -help, -h, --help and -version ask for.
 void answer(const std::vector<std::string> &arguments, ParseResult *result) {
   for (std::size_t a = 0; a < arguments.size(); ++a) {
@@ -302,6 +301,47 @@ void answer(const std::vector<std::string> &arguments, ParseResult *result) {
     }
     if (!result->message.empty() || !result->error.empty()) return;
   }
+}
+
+// The files that a path stands for: itself, without the dataset of FILE:DATASET, and what a detached NRRD header names.
+std::vector<std::string> files_of(const std::string &path) {
+  VolumeFormat format{};
+  std::string file, dataset;
+  NrrdHeader header;
+  // Whoever loads the file says what is wrong with it.
+  if (find_volume(path, &format, &file, &dataset).empty() && format == VolumeFormat::nrrd)
+    (void)read_nrrd_header(file, &header);
+  if (header.data_file.empty() || header.data_file == file) return {file};
+  return {file, header.data_file};
+}
+
+// Of all bytes of the files, one after the other.
+std::string hash_files(const std::vector<std::string> &files) {
+  std::vector<std::uint64_t> words(1 << 16);
+  std::uint64_t sum = 0, count = 0;
+  for (const std::string &path : files) {
+    std::ifstream file(path, std::ios::binary);
+    for (std::size_t bytes = 1; bytes > 0; count += words.size()) {
+      std::fill(words.begin(), words.end(), 0);
+      file.read(reinterpret_cast<char *>(words.data()), static_cast<std::streamsize>(words.size() * sizeof words[0]));
+      bytes = static_cast<std::size_t>(file.gcount());
+      sum += checksum(words.data(), (bytes + sizeof words[0] - 1) / sizeof words[0], count) + mix_bits(bytes);
+    }
+  }
+  return checksum_text(sum);
+}
+
+// All files that the options of `config` name, in the order of the options; rank 0 reads them. Collective.
+std::vector<InputFile> hash_input_files(const Config &config) {
+  Config copy = config;
+  std::vector<InputFile> files;
+  for (const Option &option : option_table(copy)) {
+    if (!option.names_file || !option.text || (option.applies && !option.applies())) continue;
+    const std::string path = option.text();
+    if (path.empty() || !option.names_file(path)) continue;
+    files.push_back({option.name, path, on_rank_0([&] { return hash_files(files_of(path)); })});
+  }
+  return files;
 }
 
 }  // namespace

@@ -1,13 +1,18 @@
 // Parses the command line into a validated Config, without PETSc. Collective; all ranks get the same result.
 #pragma once
 
-#include "options/input_files.hpp"
 #include "scene/config.hpp"
 
 #include <string>
 #include <vector>
 
 namespace eulastic {
+
+struct InputFile {
+  std::string option;   ///< that names it, without the dash
+  std::string path;     ///< as in options.txt
+  std::string content;  ///< 16 hexadecimal digits: the same bytes give the same digits
+};
 
 struct ParseResult {
   Config config;
@@ -30,5 +35,8 @@ ParseResult parse(const std::vector<std::string> &arguments, const std::string &
 
 /// Every option as resolved; itself an options file that gives the same run.
 std::string options_text(const ParseResult &result);
+
+/// Begins the line of options.txt, below that of the option, with the hash of its file.
+inline const std::string content_mark = "# content ";
 
 }  // namespace eulastic

@@ -7,44 +7,21 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <sstream>
 
 namespace eulastic {
 
 // -options_file is not among them: it is ours.
 const std::vector<std::string> &petsc_option_names() {
-  static const std::vector<std::string> names{"log_view",
-                                              "log_view_memory",
-                                              "log_all",
-                                              "log_trace",
-                                              "log_sync",
-                                              "log_exclude",
-                                              "mat_",
-                                              "vec_",
-                                              "sf_",
-                                              "dm_",
-                                              "is_",
-                                              "malloc_",
-                                              "fp_",
-                                              "memory_",
-                                              "on_error_",
-                                              "viewer_",
-                                              "debugger_",
-                                              "pressure_ksp_",
-                                              "pressure_pc_",
-                                              "pressure_mg_",
-                                              "pressure_sub_",
-                                              "pressure_redundant_",
-                                              "info",
-                                              "malloc",
-                                              "options_left",
-                                              "options_view",
-                                              "options_monitor",
-                                              "citations",
-                                              "fp_trap",
-                                              "no_signal_handler",
-                                              "skip_petscrc",
-                                              "start_in_debugger"};
+  static const std::vector<std::string> names = [] {
+    std::istringstream words(
+        "log_view log_view_memory log_all log_trace log_sync log_exclude mat_ vec_ sf_ dm_ is_ malloc_ "
+        "fp_ memory_ on_error_ viewer_ debugger_ pressure_ksp_ pressure_pc_ pressure_mg_ pressure_sub_ "
+        "pressure_redundant_ info malloc options_left options_view options_monitor citations fp_trap "
+        "no_signal_handler skip_petscrc start_in_debugger");
+    return std::vector<std::string>(std::istream_iterator<std::string>(words), {});
+  }();
   return names;
 }
 

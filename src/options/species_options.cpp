@@ -1,9 +1,43 @@
-#include "options/species_options.hpp"
 
-#include "options/voxel_rows.hpp"
+#include "options/option_rows.hpp"
 
 namespace eulastic {
 namespace {
+
+void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
+  Option &path =
+      rows.path("voxels", voxels.path,
+                "file with solid fractions or a mask (HDF5, NRRD), or a closed surface (STL): docs/voxels.md");
+  path.accepted = "a path, of HDF5 also FILE:DATASET";
+  path.required = true;
+  path.names_file = any_file;
+  const auto unless_not_given = [](Option &option, const Real3 &value, const char *note) {
+    option.default_note = note;
+    option.text = [text = option.text, &value] { return value[0] == value[0] ? text() : std::string(); };
+  };
+  unless_not_given(rows.real("voxels_spacing", voxels.spacing, positive, "length", "size of a voxel; unit of an STL"),
+                   voxels.spacing, "from the file, else the volume fills the box; 1,1,1 for an STL");
+  unless_not_given(rows.real("voxels_origin", voxels.origin, any_number, "length",
+                             "low corner of the first voxel; position of the point 0,0,0 of an STL"),
+                   voxels.origin, "from the file if the spacing is, else 0,0,0");
+  rows.boolean("voxels_invert", voxels.invert, "exchange solid and fluid of the file, for a mask of a lumen");
+}
+
+void add_anchored_row(Rows &rows, SpeciesSpec &spec) {
+  bool unused = false;
+  Option &row = rows.boolean(
+      "anchored", unused,
+      "whether the body is anchored, a wall that hardly moves (slab, tube, vessel): B is extrapolated linearly, with "
+      "second order at rest");
+  row.default_note = "true for slab and tubes, else false";
+  row.read = [&spec](const std::string &value) {
+    bool anchored = false;
+    std::string wrong = read_boolean(value, &anchored);
+    if (wrong.empty()) spec.anchored = anchored;
+    return wrong;
+  };
+  row.text = [&spec] { return spec.anchored.value_or(is_anchored(spec.shape)) ? "true" : "false"; };
+}
 
 const Names shape_names{"sphere", "biconcave",        "ellipsoid", "cylinder", "slab",
                         "tube",   "constricted_tube", "voxels",    "state"};
@@ -175,7 +209,7 @@ void add_count(Rows &rows, SpeciesSpec &spec) {
   };
   count.text = [&spec] {
     if (spec.placement == Placement::random) return spec.number < 0 ? std::string() : std::to_string(spec.number);
-    return std::to_string(spec.count[0]) + "," + std::to_string(spec.count[1]) + "," + std::to_string(spec.count[2]);
+    return list(spec.count.data(), 3, [](int n) { return std::to_string(n); });
   };
 }
 
@@ -187,10 +221,7 @@ void add_orientation(Rows &rows, SpeciesSpec &spec) {
     spec.orientation = {};
     return spec.random_orientation ? std::string() : read_reals(value, any_number, spec.orientation.data(), 3);
   };
-  orientation.text = [&spec] {
-    const Real3 &o = spec.orientation;
-    return spec.random_orientation ? "random" : to_text(o[0]) + "," + to_text(o[1]) + "," + to_text(o[2]);
-  };
+  orientation.text = [&spec] { return spec.random_orientation ? "random" : list(spec.orientation.data(), 3, to_text); };
   rows.restrict(rows.rows.size() - 1, rows.prefix + "shape", spec.shape, shape_names,
                 {Shape::sphere, Shape::biconcave, Shape::ellipsoid});
 }

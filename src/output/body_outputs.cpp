@@ -1,4 +1,5 @@
 // Outputs: what is said of bodies.
+#include "base/one_line.hpp"
 #include "flow/limits.hpp"
 #include "output/outputs.hpp"
 #include "scene/red_cell.hpp"
@@ -77,20 +78,17 @@ std::string Outputs::strain_warning() {
     *said = *said || now;
     return now;
   };
-  char text[300];
   if (once(m.red_cell_area, red_cell_bursts, &area_warned_)) {
-    std::snprintf(text, sizeof text,
-                  "t = %.9g: the area of red cell %d has grown by %.2g %%, above the %g %% at which its membrane "
-                  "bursts; use a weaker flow, or a larger -NAME_skalak_c",
-                  m.time, m.red_cell_area.label, 100 * m.red_cell_area.value, 100 * red_cell_bursts);
-    return text;
+    return print(
+        "t = %.9g: the area of red cell %d has grown by %.2g %%, above the %g %% at which its membrane "
+        "bursts; use a weaker flow, or a larger -NAME_skalak_c",
+        m.time, m.red_cell_area.label, 100 * m.red_cell_area.value, 100 * red_cell_bursts);
   }
   if (once(m.stretch, stretched, &stretch_warned_)) {
-    std::snprintf(text, sizeof text,
-                  "t = %.9g: body %d is stretched by a factor of %.3g, above %g: its strain is hard to resolve; use "
-                  "more -grid_cells, and read the verdict at the end",
-                  m.time, m.stretch.label, m.stretch.value, stretched);
-    return text;
+    return print(
+        "t = %.9g: body %d is stretched by a factor of %.3g, above %g: its strain is hard to resolve; use "
+        "more -grid_cells, and read the verdict at the end",
+        m.time, m.stretch.label, m.stretch.value, stretched);
   }
   return {};
 }

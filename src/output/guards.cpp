@@ -1,29 +1,19 @@
 #include "output/guards.hpp"
 
+#include "base/one_line.hpp"
 #include "boxes/boxed_bodies.hpp"
-#include "diagnostics/places.hpp"
 #include "field/open_sides.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+#include <limits>
 
 namespace eulastic {
 namespace {
 
-__attribute__((format(printf, 1, 2))) std::string text(const char *format, ...) {
-  char line[512];
-  va_list list;
-  va_start(list, format);
-  std::vsnprintf(line, sizeof line, format, list);
-  va_end(list);
-  return line;
-}
-
 std::string where(const State &state, const Real3 &place) {
-  return text("step %lld, t = %.9g, near x, y, z = %.6g, %.6g, %.6g: ", static_cast<long long>(state.step), state.time,
-              place[0], place[1], place[2]);
+  return print("step %lld, t = %.9g, near x, y, z = %.6g, %.6g, %.6g: ", static_cast<long long>(state.step), state.time,
+               place[0], place[1], place[2]);
 }
 
 // NaN is beyond every limit.
@@ -34,15 +24,15 @@ Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
   const State &state = solver.state();
   const char *broken = solver.limits(extremes).broken(state.dt);
   return {"nonfinite", where(state, place_of_cell(solver.domain(), extremes.first_bad)) + "a field is not finite; " +
-                           text("dt = %.3g, ", state.dt) +
-                           (broken ? text("beyond the %s limit; lower -time_step", broken)
+                           print("dt = %.3g, ", state.dt) +
+                           (broken ? print("beyond the %s limit; lower -time_step", broken)
                                    : std::string("within all known limits; lower -time_step, more -grid_cells"))};
 }
 
 Stop stop_reason(const Solver &solver) {
   const State &state = solver.state();
   return {"guard",
-          text("step %lld, t = %.9g: ", static_cast<long long>(state.step), state.time) + solver.stop_reason()};
+          print("step %lld, t = %.9g: ", static_cast<long long>(state.step), state.time) + solver.stop_reason()};
 }
 
 }  // namespace
@@ -75,10 +65,10 @@ PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &ext
   stop->reason = "guard";
   stop->message =
       where(state, place) +
-      (still ? text("the time step %.3g is too short to change the time; check the units, give -time_step", dt)
-             : text("CFL number %.4g, the sum of |v_i| dt/h_i, is above -guard_cfl %g; lower -time_step "
-                    "(%.3g now)",
-                    courant, control_.cfl, dt));
+      (still ? print("the time step %.3g is too short to change the time; check the units, give -time_step", dt)
+             : print("CFL number %.4g, the sum of |v_i| dt/h_i, is above -guard_cfl %g; lower -time_step "
+                     "(%.3g now)",
+                     courant, control_.cfl, dt));
   PetscFunctionReturn(0);
 }
 
@@ -94,22 +84,22 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   Real3 place{};
   auto find = place_of_speed;
   if (beyond(m.energy_made, control_.energy_growth)) {
-    what = text(
+    what = print(
         "the numerics have generated energy, %.3g of what the run held and was supplied with meanwhile, above "
         "-guard_energy_growth %g; lower -time_step (%.3g now), more -grid_cells, or -series_interval if rows are far "
         "apart",
         m.energy_made, control_.energy_growth, state.dt);
   } else if (beyond(divergence, control_.divergence)) {
-    what = text("rms(div v) h/U = %.3g is above -guard_divergence %g; %s (%.3g now)", divergence, control_.divergence,
-                pressure_advice_.c_str(), state.dt);
+    what = print("rms(div v) h/U = %.3g is above -guard_divergence %g; %s (%.3g now)", divergence, control_.divergence,
+                 pressure_advice_.c_str(), state.dt);
     find = place_of_divergence;
   } else if (beyond(m.mach, control_.mach)) {
-    what = text(
+    what = print(
         "Mach number |v|/beta = %.3g of artificial compressibility is above -guard_mach %g; lower -time_step "
         "(%.3g now) or raise -acm_iterations_max",
         m.mach, control_.mach, state.dt);
   } else if (beyond(m.resolved_drift, control_.volume_drift)) {
-    what = text(
+    what = print(
         "the volume of body %d has changed by %.3g of its own, above -guard_volume_drift %g; more "
         "-grid_cells, -interface_scheme plic, or %s (%.3g now)",
         m.drifting_body, m.resolved_drift, control_.volume_drift, pressure_advice_.c_str(), state.dt);
@@ -132,6 +122,59 @@ PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
                              solver.boxed().list()));
   if (extremes.first_bad >= 0) *stop = not_finite(solver, extremes);
   PetscFunctionReturn(0);
+}
+
+namespace {
+
+// Centre of the cell with the largest value(i, j, k) >= 0; the first one in the order of indices if there are several.
+template <class Value>
+PetscErrorCode largest(const Domain &domain, Value value, Real3 *place) {
+  PetscFunctionBeginUser;
+  const Int3 &begin = domain.layout().begin, &N = domain.domain_cells();
+  double most = -1, own = -1, first = std::numeric_limits<double>::infinity();
+  for_points(domain.rows(), [&](int i, int j, int k) {
+    const double q = value(i, j, k);
+    if (!(q > own)) return;
+    own = q;
+    first = begin[0] + i + double(N[0]) * (begin[1] + j + double(N[1]) * (begin[2] + k));
+  });
+  PetscCallMPI(MPI_Allreduce(&own, &most, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
+  if (own < most) first = std::numeric_limits<double>::infinity();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, domain.comm()));
+  *place = std::isfinite(first) ? place_of_cell(domain, first) : Real3{};
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode place_of_speed(const Domain &domain, const Field &velocity, Real3 *place) {
+  PetscFunctionBeginUser;
+  const auto rate = [&](int i, int j, int k) {
+    double sum = 0;
+    for (int d = 0; d < velocity.count(); ++d) sum += std::fabs(velocity[d](i, j, k)) / domain.spacing()[d];
+    return sum;
+  };
+  PetscCall(largest(domain, rate, place));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode place_of_divergence(const Domain &domain, const Field &velocity, Real3 *place) {
+  PetscFunctionBeginUser;
+  const auto divergence = [&](int i, int j, int k) {
+    double sum = 0;
+    for (int d = 0; d < velocity.count(); ++d)
+      sum += (velocity[d](i + (d == 0), j + (d == 1), k + (d == 2)) - velocity[d](i, j, k)) / domain.spacing()[d];
+    return std::fabs(sum);
+  };
+  PetscCall(largest(domain, divergence, place));
+  PetscFunctionReturn(0);
+}
+
+Real3 place_of_cell(const Box &box, double index) {
+  const Int3 &n = box.domain_cells();
+  const Real3 &h = box.spacing();
+  const double i = std::fmod(index, n[0]), j = std::fmod(std::floor(index / n[0]), n[1]);
+  return {(i + 0.5) * h[0], (j + 0.5) * h[1], (std::floor(index / n[0] / n[1]) + 0.5) * h[2]};
 }
 
 }  // namespace eulastic

@@ -9,6 +9,8 @@
 #include "bodies/measures.hpp"
 #include "diagnostics/flow_measures.hpp"
 #include "diagnostics/surface_loads.hpp"
+#include "field/field.hpp"
+#include "grid/domain.hpp"
 #include "membranes/surface_measures.hpp"
 #include "rigid/rigid_surfaces.hpp"
 #include "scene/config.hpp"
@@ -65,5 +67,12 @@ private:
   GuardControl control_;
   std::string pressure_advice_;
 };
+
+/// Centre of the cell with the largest sum |v_d|/h_d on its low faces; the first one if there are several. Collective.
+PetscErrorCode place_of_speed(const Domain &domain, const Field &velocity, Real3 *place);
+/// Centre of the cell with the largest |div v|; the first one if there are several. Reads one ghost layer. Collective.
+PetscErrorCode place_of_divergence(const Domain &domain, const Field &velocity, Real3 *place);
+/// Centre of the cell with this index, counted along x, then y, then z.
+Real3 place_of_cell(const Box &box, double index);
 
 }  // namespace eulastic

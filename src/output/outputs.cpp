@@ -3,13 +3,11 @@
 #include "base/events.hpp"
 #include "boxes/boxed_bodies.hpp"
 #include "output/saved_state.hpp"
-#include "output/series_columns.hpp"
 #include "output/verdict.hpp"
 #include "solver/looks.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace eulastic {
 
@@ -40,10 +38,11 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   PetscFunctionBeginUser;
   const MPI_Comm comm = domain_->comm();
   directory_ = directory;
-  PetscCall(series_.open(comm, directory + "/series.csv",
-                         series_columns(crossed_sides(config_.sides, *domain_), vessel_flows(config_, 0, {}, {}),
-                                        solver_->part<Adhesion>() != nullptr),
-                         same_directory ? position.series_rows : 0));
+  Row row;
+  row.sides = crossed_sides(config_.sides, *domain_);
+  std::vector<std::string> columns;
+  for (const auto &[name, value] : series_row(row)) columns.push_back(name);
+  PetscCall(series_.open(comm, directory + "/series.csv", columns, same_directory ? position.series_rows : 0));
   PetscCall(samples_.open(config_.samples, *domain_, directory, probes_time_, position.profile_time));
   if (solver_->bodies().bodies() > 0) {
     const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
@@ -57,7 +56,7 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
     PetscCall(bond_files_.open(comm, directory, same_directory ? position.bonds : BondFiles::Position{}));
   snapshots_before_ = position.snapshots;
   if (snapshot_due_.interval > 0) {
-    snapshots_ = std::make_unique<SnapshotOutput>(*domain_, directory, config_.output.snapshot_format);
+    snapshots_ = std::make_unique<SnapshotOutput>(*domain_, directory, config_.output.snapshot_vti);
     PetscCall(snapshots_->resume(static_cast<int>(position.snapshots), same_directory));
   }
   PetscFunctionReturn(0);

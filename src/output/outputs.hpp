@@ -98,6 +98,8 @@ private:
   void set_energy_scales(EnergyState *energy) const;
   PetscErrorCode await_row(double time_before);
   PetscErrorCode record_power();
+  /// Names and values of the columns of series.csv.
+  std::vector<std::pair<std::string, double>> series_row(const Row &row) const;
   PetscErrorCode write_row();
   PetscErrorCode write_row_now();
   EnergyBudget budget_now() const;

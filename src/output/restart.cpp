@@ -83,16 +83,12 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
 
 // A run that is beyond its end already.
 std::string beyond_end(const State &state, const TimeControl &time) {
-  char text[160];
   if (time.end > 0 && state.time > time.end * (1 + 1e-12))
-    std::snprintf(text, sizeof text, "-time_end: the checkpoint is at t = %.9g already; accepted: a later end",
-                  state.time);
-  else if (time.steps_max > 0 && state.step > time.steps_max)
-    std::snprintf(text, sizeof text, "-time_steps_max: the checkpoint is at step %lld already; accepted: more steps",
-                  static_cast<long long>(state.step));
-  else
-    return {};
-  return text;
+    return print("-time_end: the checkpoint is at t = %.9g already; accepted: a later end", state.time);
+  if (time.steps_max > 0 && state.step > time.steps_max)
+    return print("-time_steps_max: the checkpoint is at step %lld already; accepted: more steps",
+                 static_cast<long long>(state.step));
+  return {};
 }
 
 }  // namespace
@@ -122,9 +118,8 @@ PetscErrorCode time_thrown_away(MPI_Comm comm, const std::string &directory, dou
 
 std::string shorter_end(const Config &config, double held) {
   if (config.time.end >= held * (1 - 1e-12)) return {};
-  char times[100];
-  std::snprintf(times, sizeof times, "-time_end: %.9g is before t = %.9g, which the run in ", config.time.end, held);
-  return times + config.output.directory +
+  return print("-time_end: %.9g is before t = %.9g, which the run in ", config.time.end, held) +
+         config.output.directory +
          " has reached; accepted: a later end, another -output_dir, or -output_overwrite to discard what comes after";
 }
 

@@ -1,7 +1,8 @@
 // Outputs: rows of series.csv and bodies.h5.
 #include "adhesion/adhesion.hpp"
 #include "base/events.hpp"
-#include "output/between.hpp"
+#include "diagnostics/energy_budget.hpp"
+#include "output/guards.hpp"
 #include "output/outputs.hpp"
 #include "output/time_step_control.hpp"
 #include "rigid/rigid_flow.hpp"
@@ -12,6 +13,81 @@
 #include <utility>
 
 namespace eulastic {
+namespace {
+
+// Strain energies are squares of what grows in proportion to time.
+double energy_between(double energy, double other, double share) {
+  if (energy < 0 || other < 0) return energy + share * (other - energy);
+  const double root = std::sqrt(energy), between = root + share * (std::sqrt(other) - root);
+  return between * between;
+}
+
+struct Between {
+  double share;
+
+  void operator()(double &value, double other) const { value += share * (other - value); }
+  void operator()(Real3 &value, const Real3 &other) const {
+    for (int d = 0; d < 3; ++d) (*this)(value[d], other[d]);
+  }
+  template <class T>
+  void operator()(std::vector<T> &values, const std::vector<T> &others) const {
+    for (std::size_t n = 0; n < values.size(); ++n) (*this)(values[n], others[n]);
+  }
+
+  template <class T, class... Members>
+  void all(T &value, const T &other, Members... members) const {
+    ((*this)(value.*members, other.*members), ...);
+  }
+
+  void operator()(FlowMeasures &flow, const FlowMeasures &other) const {
+    all(flow, other, &FlowMeasures::viscous_dissipation, &FlowMeasures::phase_volume);
+  }
+  void operator()(BodyMeasure &body, const BodyMeasure &other) const {
+    using B = BodyMeasure;
+    all(body, other, &B::volume, &B::centroid, &B::velocity, &B::semi_axes, &B::taylor_deformation, &B::elastic_energy,
+        &B::rest_deformation, &B::trace_max);
+    // Of an axis, known but for half turns.
+    body.inclination += share * std::remainder(other.inclination - body.inclination, 180);
+    if (body.inclination > 90) body.inclination -= 180;
+    if (body.inclination <= -90) body.inclination += 180;
+  }
+  void operator()(SurfaceMeasure &surface, const SurfaceMeasure &other) const {
+    using S = SurfaceMeasure;
+    all(surface, other, &S::area, &S::shear_energy, &S::area_energy, &S::bending_energy, &S::turning_rate,
+        &S::area_strain, &S::largest_stretch);
+  }
+  void operator()(EnergyRates &rates, const EnergyRates &other) const {
+    using E = EnergyRates;
+    all(rates, other, &E::force_power, &E::wall_power, &E::elastic_power, &E::extended_power);
+    rates.extended_energy = energy_between(rates.extended_energy, other.extended_energy, share);
+  }
+};
+
+// Moves `measured` by the fraction `share` towards `other`, of a later time with the same bodies and velocity:
+// linearly, for strain energies their square roots. Volume drifts and loads are not changed.
+void interpolate_between(const Measured &other, double share, Measured *measured) {
+  const Between between{share};
+  const double energy = measured->flow.elastic_energy, linear = energy + share * (other.flow.elastic_energy - energy);
+  measured->flow.elastic_energy = energy_between(energy, other.flow.elastic_energy, share);
+  between(measured->flow, other.flow);
+  between(measured->surface.energy, other.surface.energy);
+  between(measured->surface.power, other.surface.power);
+  between(measured->bodies, other.bodies);
+  between(measured->surfaces, other.surfaces);
+  if (linear > 0)  // together they have that of the flow
+    for (BodyMeasure &body : measured->bodies) body.elastic_energy *= measured->flow.elastic_energy / linear;
+}
+
+void interpolate_between(const EnergyState &other, double share, EnergyState *energy) {
+  const Between between{share};
+  energy->elastic = energy_between(energy->elastic, other.elastic, share);
+  between(energy->surface, other.surface);
+  between(energy->surface_power, other.surface_power);
+  between(energy->dissipation, other.dissipation);
+  between(energy->rates, other.rates);
+}
+
+}  // namespace
 
 // All but volume drifts, of phases as Looks::phases() has them; `measured`: of another time, or of this velocity.
 PetscErrorCode Outputs::look(Measured *measured) {
@@ -209,49 +285,62 @@ PetscErrorCode Outputs::record_power() {
   PetscFunctionReturn(0);
 }
 
+std::vector<std::pair<std::string, double>> Outputs::series_row(const Row &row) const {
+  const FlowMeasures &flow = row.measured.flow;
+  const EnergyRates &rates = row.energy.rates;
+  double solid = 0;
+  for (const double volume : flow.phase_volume) solid += volume;
+  std::vector<std::pair<std::string, double>> columns{{"time", row.measured.time},
+                                                      {"step", row.step},
+                                                      {"dt", row.dt},
+                                                      {"kinetic_energy", flow.kinetic_energy},
+                                                      {"elastic_energy", flow.elastic_energy},
+                                                      {"viscous_dissipation", flow.viscous_dissipation},
+                                                      {"bulk_velocity_x", flow.bulk_velocity[0]},
+                                                      {"bulk_velocity_y", flow.bulk_velocity[1]},
+                                                      {"bulk_velocity_z", flow.bulk_velocity[2]},
+                                                      {"speed_max", flow.speed_max},
+                                                      {"divergence_rms", flow.divergence_rms},
+                                                      {"divergence_max", flow.divergence_max},
+                                                      {"solid_volume", solid},
+                                                      {"volume_drift", row.measured.volume_drift},
+                                                      {"force_power", rates.force_power},
+                                                      {"wall_power", rates.wall_power},
+                                                      {"elastic_power", rates.elastic_power},
+                                                      {"energy_lost", energy_.lost()},
+                                                      {"energy_lost_elastic", energy_.lost_elastic()},
+                                                      {"energy_lost_extended", energy_.lost_extended()},
+                                                      {"surface_energy", row.energy.surface},
+                                                      {"surface_power", row.energy.surface_power}};
+  if (!row.sides.empty()) columns.emplace_back("side_power", rates.side_power);
+  for (const SideFlow &side : row.sides)
+    columns.insert(columns.end(),
+                   {{"flow_rate_" + side.name(), side.flow_rate}, {"pressure_" + side.name(), side.pressure}});
+  for (const VesselFlow &vessel : vessel_flows(config_, row.measured.time, flow.bulk_velocity, row.sides))
+    columns.insert(columns.end(), {{vessel.species + "_flow_rate", vessel.flow_rate},
+                                   {vessel.species + "_apparent_viscosity", vessel.apparent_viscosity}});
+  if (!solver_->part<Adhesion>()) return columns;
+  const BondTotals &bonds = row.measured.bonds;
+  columns.insert(columns.end(), {{"bonds", bonds.bonds},
+                                 {"bonds_formed", bonds.formed},
+                                 {"bonds_broken", bonds.broken},
+                                 {"bond_force_x", bonds.force[0]},
+                                 {"bond_force_y", bonds.force[1]},
+                                 {"bond_force_z", bonds.force[2]}});
+  return columns;
+}
+
 PetscErrorCode Outputs::write_row() {
   PetscFunctionBeginUser;
   if (seen_) PetscCall(record_power());
   waits_ = seen_ = false;
   is_new_ = true;
   Measured &measured = row_.measured;
-  const FlowMeasures &flow = measured.flow;
-  const EnergyRates &rates = row_.energy.rates;
   energy_.advance(measured.time, row_.energy);
   measured.energy_made = energy_unknown_.empty() ? energy_.made_share() : 0;
-  double solid = 0;
-  for (const double volume : flow.phase_volume) solid += volume;
-  std::vector<double> row{measured.time,
-                          row_.step,
-                          row_.dt,
-                          flow.kinetic_energy,
-                          flow.elastic_energy,
-                          flow.viscous_dissipation,
-                          flow.bulk_velocity[0],
-                          flow.bulk_velocity[1],
-                          flow.bulk_velocity[2],
-                          flow.speed_max,
-                          flow.divergence_rms,
-                          flow.divergence_max,
-                          solid,
-                          measured.volume_drift,
-                          rates.force_power,
-                          rates.wall_power,
-                          rates.elastic_power,
-                          energy_.lost(),
-                          energy_.lost_elastic(),
-                          energy_.lost_extended(),
-                          row_.energy.surface,
-                          row_.energy.surface_power};
-  if (!row_.sides.empty()) row.push_back(rates.side_power);
-  for (const SideFlow &side : row_.sides) row.insert(row.end(), {side.flow_rate, side.pressure});
-  for (const VesselFlow &vessel : vessel_flows(config_, measured.time, flow.bulk_velocity, row_.sides))
-    row.insert(row.end(), {vessel.flow_rate, vessel.apparent_viscosity});
-  if (solver_->part<Adhesion>()) {
-    const BondTotals &bonds = measured.bonds;
-    row.insert(row.end(), {bonds.bonds, bonds.formed, bonds.broken, bonds.force[0], bonds.force[1], bonds.force[2]});
-  }
-  PetscCall(series_.write(row));
+  std::vector<double> values;
+  for (const auto &[name, value] : series_row(row_)) values.push_back(value);
+  PetscCall(series_.write(values));
   if (bodies_file_) {
     const auto name = [this](int label) -> const std::string & {
       return config_.species[solver_->bodies().species(label)].name;

@@ -10,7 +10,7 @@
 #include "membranes/membrane_transport.hpp"
 #include "openings/inlet_generators.hpp"
 #include "output/checkpoint_range.hpp"
-#include "parts/carried_state.hpp"
+#include "parts/state.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -115,9 +115,7 @@ PetscErrorCode gather_numbers(Solver &solver, CheckpointNumbers *numbers) {
 }
 
 PetscErrorCode require_range(const Domain &domain, const std::string &path, const std::string &absurd) {
-  PetscFunctionBeginUser;
-  PetscCall(fail_together(domain.comm(), absurd.empty() ? absurd : path + ": " + absurd));
-  PetscFunctionReturn(0);
+  return fail_together(domain.comm(), absurd.empty() ? absurd : path + ": " + absurd);
 }
 
 PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const Domain &domain, BodyTracker *bodies,

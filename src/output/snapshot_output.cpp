@@ -16,7 +16,7 @@ bool is_requested(const OutputControl &output, const char *name) {
 
 SnapshotField as_field(const WallStress &wall, Stored precision) {
   SnapshotField field;
-  field.format.name = std::string("wall_shear_stress_") + "xyz"[wall.direction] + (wall.high ? "max" : "min");
+  field.format.name = "wall_shear_stress_" + side_name(wall.direction, wall.high);
   field.format.stored = precision;
   field.format.plane = wall.direction;
   field.format.plane_high = wall.high;
@@ -77,7 +77,7 @@ PetscErrorCode SnapshotOutput::write_fields(const Config &config, Solver *solver
   std::vector<SnapshotField> fields = fields_.collect(wanted, state.velocity, state.pressure, phases);
   std::vector<WallStress> walls;
   Field rigid, elastic, stress, widened;
-  if (is_requested(config.output, "wall_shear_stress") || config.output.snapshot_format == SnapshotFormat::vti) {
+  if (is_requested(config.output, "wall_shear_stress") || config.output.snapshot_vti) {
     EdgeViscosity of_place{domain, config.fluid.viscosity, config.fluid.density, viscosity};
     walls = wall_shear_stress(domain, config.sides, state.time, of_place, state.velocity, phases);
     PetscCall(solid_of_vessels(config, true, phases, solver, &rigid));

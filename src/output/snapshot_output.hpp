@@ -12,8 +12,8 @@ namespace eulastic {
 
 class SnapshotOutput {
 public:
-  SnapshotOutput(const Domain &domain, const std::string &directory, SnapshotFormat shown)
-      : writer_(domain, directory, shown), fields_(domain) {}
+  SnapshotOutput(const Domain &domain, const std::string &directory, bool vti)
+      : writer_(domain, directory, vti), fields_(domain) {}
 
   /// As SnapshotWriter's.
   PetscErrorCode resume(int count, bool same_directory) { return writer_.resume(count, same_directory); }

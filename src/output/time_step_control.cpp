@@ -1,10 +1,10 @@
 #include "output/time_step_control.hpp"
 
+#include "base/one_line.hpp"
 #include "solids/unresolved.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace eulastic {
 namespace {
@@ -19,13 +19,10 @@ constexpr double many_steps = 1e9;
 
 // The numbers of such a body mean little.
 std::string unresolved(const State &state) {
-  char text[240];
-  std::snprintf(
-      text, sizeof text,
+  return print(
       "t = %.9g: the grid does not resolve the strain of a body (det B > %g, or half of a membrane's area gone), "
       "part of which is lost there; use more -grid_cells",
       state.time, largest_determinant);
-  return text;
 }
 
 }  // namespace
@@ -45,10 +42,7 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
     if (time_.step > 0) {
       dt_ = time_.step;
       if (const char *limit = limits.broken(dt_); limit && !warned_) {
-        char text[200];
-        std::snprintf(text, sizeof text, "-time_step %g exceeds the %s limit (automatic: %g)", dt_, limit,
-                      limits.automatic());
-        *warning = text;
+        *warning = print("-time_step %g exceeds the %s limit (automatic: %g)", dt_, limit, limits.automatic());
       }
     } else {
       dt_ = limits.automatic();
@@ -84,9 +78,7 @@ std::string TimeStepControl::too_many_steps(const State &state) const {
   double steps = (time_.end - state.time) / dt_;
   if (time_.steps_max > 0) steps = std::min(steps, double(time_.steps_max) - double(state.step));
   if (!(steps > many_steps)) return {};
-  char text[200];
-  std::snprintf(text, sizeof text, "-time_end %g is %.2g steps of %.3g away; check the units", time_.end, steps, dt_);
-  return text;
+  return print("-time_end %g is %.2g steps of %.3g away; check the units", time_.end, steps, dt_);
 }
 
 }  // namespace eulastic

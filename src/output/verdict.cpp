@@ -1,9 +1,9 @@
 #include "output/verdict.hpp"
 
+#include "base/one_line.hpp"
 #include "scene/red_cell.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace eulastic {
 namespace {
@@ -22,11 +22,7 @@ const char *word(double value, double to_look, double not_to_trust) {
   return value > not_to_trust || value != value ? do_not_trust : value > to_look ? look : fine;
 }
 
-std::string percent(double share) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
-  return text;
-}
+std::string percent(double share) { return print("%.2g %%", 100 * share); }
 
 double over(double a, double b) { return b > 0 ? a / b : 0; }
 

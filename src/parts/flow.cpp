@@ -2,7 +2,6 @@
 
 #include "field/open_sides.hpp"
 #include "field/sides.hpp"
-#include "parts/carried_state.hpp"
 #include "parts/flow_part.hpp"
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 
 #include "base/petsc.hpp"
 #include "bodies/measures.hpp"
-#include "field/fluid.hpp"
 #include "field/ghost_exchange.hpp"
-#include "field/phase_place.hpp"
+#include "field/material.hpp"
+#include "field/phase.hpp"
 #include "field/rigid_faces.hpp"
 #include "field/work_space.hpp"
 #include "grid/domain.hpp"

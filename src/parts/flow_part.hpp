@@ -6,7 +6,7 @@
 #include "base/petsc.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
-#include "field/surface_sample.hpp"
+#include "field/surface_marker.hpp"
 
 #include <cmath>
 #include <functional>

@@ -4,7 +4,6 @@
 #include "field/open_sides.hpp"
 #include "grid/blocks.hpp"
 #include "grid/sum_row_parts.hpp"
-#include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"
 

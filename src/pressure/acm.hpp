@@ -7,8 +7,6 @@
 #include "kernels/momentum.hpp"
 #include "pressure/pressure_solver.hpp"
 
-#include <array>
-
 namespace eulastic {
 
 /// Coefficients kappa = beta^2 dt^2 and g = beta^2 dt^2 gamma of delta p = -(kappa D* + g p)/dt.

@@ -2,7 +2,6 @@
 
 #include "base/events.hpp"
 #include "field/open_sides.hpp"
-#include "grid/domain.hpp"
 
 #include <algorithm>
 #include <cmath>

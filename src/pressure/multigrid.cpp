@@ -1,11 +1,11 @@
 #include "pressure/multigrid.hpp"
 
+#include "base/one_line.hpp"
 #include "grid/blocks.hpp"
 #include "grid/row_scratch.hpp"
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace eulastic {
 
@@ -177,11 +177,9 @@ std::string Multigrid::shares(const Domain &domain) {
     double &cells = levels[l]->partition().ranks() == 1 ? gathered : joined;
     cells = std::max(cells, levels[l]->box().domain_cell_count());
   }
-  char fewer[80] = "", text[240];
-  if (joined > 0) std::snprintf(fewer, sizeof fewer, ", on fewer ranks from %.0f cells on", joined);
-  std::snprintf(text, sizeof text, "%zu levels%s; the one of %.0f cells goes to every rank, %.4g MB each time",
-                levels.size(), fewer, gathered, 1e-6 * sizeof(double) * gathered);
-  return text;
+  const std::string fewer = joined > 0 ? print(", on fewer ranks from %.0f cells on", joined) : "";
+  return print("%zu levels%s; the one of %.0f cells goes to every rank, %.4g MB each time", levels.size(),
+               fewer.c_str(), gathered, 1e-6 * sizeof(double) * gathered);
 }
 
 PetscErrorCode Multigrid::create(const Domain &domain, const ZeroSides &zero) {

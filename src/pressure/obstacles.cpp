@@ -147,22 +147,16 @@ void ObstacleSolver::apply(double dt, const Field &q, Field &out) const {
                       double(cells_.size()) * (7 * domain_->dimension() + 1));
   const ConstView from = q[0];
   const Real3 &h = domain_->spacing();
-  std::size_t at = 0;
-  for (const Segment &row : domain_->rows()) {
-    const double *u = from.row(row.j, row.k);
-    double *to = out[0].row(row.j, row.k);
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
-      const int i = cells_[c].i;
-      double sum = 0;
-      for (int d = 0; d < domain_->dimension(); ++d) {
-        const std::ptrdiff_t s = from.stride(d);
-        const double *open = cells_[c].open + 2 * d;
-        sum += (open[0] * (u[i - s] - u[i]) + open[1] * (u[i + s] - u[i])) / (h[d] * h[d]);
-      }
-      to[i] = dt * sum;
+  for_cells_at_bodies([&](const CellAtBody &cell, const Segment &row) {
+    const double *u = from.row(row.j, row.k) + cell.i;
+    double sum = 0;
+    for (int d = 0; d < domain_->dimension(); ++d) {
+      const std::ptrdiff_t s = from.stride(d);
+      const double *open = cell.open + 2 * d;
+      sum += (open[0] * (u[-s] - u[0]) + open[1] * (u[s] - u[0])) / (h[d] * h[d]);
     }
-    ++at;
-  }
+    out[0](cell.i, row.j, row.k) = dt * sum;
+  });
 }
 
 // Adds a diagonal correction in nearly closed cells, whose faces the preconditioner regards as open. If bodies are at
@@ -170,20 +164,14 @@ void ObstacleSolver::apply(double dt, const Field &q, Field &out) const {
 PetscErrorCode ObstacleSolver::add_diagonal_correction(double dt, const Field &residual, Field &correction) const {
   PetscFunctionBeginUser;
   const Real3 &h = domain_->spacing();
-  std::size_t at = 0;
-  for (const Segment &row : domain_->rows()) {
-    const double *r = residual[0].row(row.j, row.k);
-    double *q = correction[0].row(row.j, row.k);
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
-      double open = 0, all = 0;
-      for (int d = 0; d < domain_->dimension(); ++d) {
-        open += (cells_[c].open[2 * d] + cells_[c].open[2 * d + 1]) / (h[d] * h[d]);
-        all += 2 / (h[d] * h[d]);
-      }
-      if (open > 0) q[cells_[c].i] -= (1 / open - 1 / all) / dt * r[cells_[c].i];
+  for_cells_at_bodies([&](const CellAtBody &cell, const Segment &row) {
+    double open = 0, all = 0;
+    for (int d = 0; d < domain_->dimension(); ++d) {
+      open += (cell.open[2 * d] + cell.open[2 * d + 1]) / (h[d] * h[d]);
+      all += 2 / (h[d] * h[d]);
     }
-    ++at;
-  }
+    if (open > 0) correction[0](cell.i, row.j, row.k) -= (1 / open - 1 / all) / dt * residual[0](cell.i, row.j, row.k);
+  });
   PetscCall(exchange_->update_ghosts(correction, 1));
   fill_ghosts_of_increment(*domain_, correction[0], 1);
   PetscFunctionReturn(0);
@@ -337,15 +325,10 @@ void ObstacleSolver::copy_closed(const Field &from, Field *to) const {
 PetscErrorCode ObstacleSolver::scale_divergence(double part, Field &divergence) const {
   PetscFunctionBeginUser;
   const int faces = 2 * domain_->dimension();
-  std::size_t at = 0;
-  for (const Segment &row : domain_->rows()) {
-    double *D = divergence[0].row(row.j, row.k);
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) {
-      const double open = std::accumulate(cells_[c].open, cells_[c].open + faces, 0.0) / faces;
-      D[cells_[c].i] /= std::max({least_open, open, part * cells_[c].response});
-    }
-    ++at;
-  }
+  for_cells_at_bodies([&](const CellAtBody &cell, const Segment &row) {
+    const double open = std::accumulate(cell.open, cell.open + faces, 0.0) / faces;
+    divergence[0](cell.i, row.j, row.k) /= std::max({least_open, open, part * cell.response});
+  });
   PetscCall(exchange_->update_ghosts(divergence, 1));
   fill_ghosts_of_increment(*domain_, divergence[0], 1);
   PetscFunctionReturn(0);

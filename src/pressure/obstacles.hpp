@@ -55,6 +55,9 @@ private:
     bool closed() const;
   };
   void apply(double dt, const Field &q, Field &out) const;
+  /// Calls work(cell, row) for every owned cell with faces that are not open.
+  template <class Work>
+  void for_cells_at_bodies(const Work &work) const;
   /// Calls work(cell) for every owned cell whose faces are all closed.
   template <class Work>
   void for_closed_cells(const Work &work) const;
@@ -76,13 +79,19 @@ private:
 };
 
 template <class Work>
-void ObstacleSolver::for_closed_cells(const Work &work) const {
+void ObstacleSolver::for_cells_at_bodies(const Work &work) const {
   std::size_t at = 0;
   for (const Segment &row : domain_->rows()) {
-    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c)
-      if (cells_[c].closed()) work(Int3{cells_[c].i, row.j, row.k});
+    for (std::size_t c = first_[at]; c < first_[at + 1]; ++c) work(cells_[c], row);
     ++at;
   }
+}
+
+template <class Work>
+void ObstacleSolver::for_closed_cells(const Work &work) const {
+  for_cells_at_bodies([&](const CellAtBody &cell, const Segment &row) {
+    if (cell.closed()) work(Int3{cell.i, row.j, row.k});
+  });
 }
 
 }  // namespace eulastic

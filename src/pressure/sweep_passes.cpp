@@ -1,7 +1,6 @@
 #include "pressure/sweep_passes.hpp"
 
 #include "grid/blocks.hpp"
-#include "grid/domain.hpp"
 #include "kernels/momentum.hpp"
 #include "kernels/stencils.hpp"
 #include "pressure/row_sums.hpp"

@@ -4,7 +4,7 @@
 #include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
 #include "grid/domain.hpp"
-#include "pressure/minimise.hpp"
+#include "pressure/increment_memory.hpp"
 
 #include <functional>
 

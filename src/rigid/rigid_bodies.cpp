@@ -1,12 +1,12 @@
 #include "rigid/rigid_bodies.hpp"
 
 #include "base/exact_sum.hpp"
+#include "base/one_line.hpp"
 #include "bodies/fill_phase.hpp"
 #include "field/sides.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace eulastic {
@@ -171,15 +171,13 @@ void RigidBodies::mark_file(int a, ConstView phi, int index) {
   if (!level_[a]) level_[a] = Field(domain_, 1);
   const View inside = inside_[a][0], level = level_[a][0];
   const std::ptrdiff_t step = phi.stride(a);
-  for (int k = 0; k < domain_.points_end(2, a == 2); ++k)
-    for (int j = 0; j < domain_.points_end(1, a == 1); ++j)
-      for (int i = 0; i < domain_.points_end(0, a == 0); ++i) {
-        const double *q = phi.row(j, k) + i;
-        const double value = 0.5 - 0.5 * (q[0] + q[-step]);
-        if (inside(i, j, k) != 0) continue;
-        level(i, j, k) = value;
-        if (value < 0) inside(i, j, k) = 1 + image_of(index, {0, 0, 0});
-      }
+  for_points(domain_.points(at_face[a]), [&](int i, int j, int k) {
+    const double *q = phi.row(j, k) + i;
+    const double value = 0.5 - 0.5 * (q[0] + q[-step]);
+    if (inside(i, j, k) != 0) return;
+    level(i, j, k) = value;
+    if (value < 0) inside(i, j, k) = 1 + image_of(index, {0, 0, 0});
+  });
 }
 
 // Fraction of the link from a place outside to one inside the image at which the surface is, at least `shortest`.
@@ -462,12 +460,11 @@ PetscErrorCode RigidBodies::map_file(const SpeciesSpec &spec, const Phase &phase
   const double cells = std::accumulate(box.fraction.begin(), box.fraction.end(), 0.0),
                found_cells = mass->volume / domain_.cell_volume();
   if (std::fabs(found_cells - cells) > most_lost * cells) {
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  " moves and must be three cells thick to be resolved: it would have %.4g cells instead of %.4g; "
-                  "accepted: a finer grid, or no motion",
-                  found_cells, cells);
-    *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path + text;
+    *wrong = "-" + spec.name + "_voxels: " + spec.voxels.path +
+             print(
+                 " moves and must be three cells thick to be resolved: it would have %.4g cells instead of %.4g; "
+                 "accepted: a finer grid, or no motion",
+                 found_cells, cells);
   }
   PetscFunctionReturn(0);
 }
@@ -564,13 +561,11 @@ void RigidBodies::report_contact(const std::array<int, 2> &bodies, double time) 
   const auto species = [&](int index) { return species_[faces_.bodies[images * index].motion].spec; };
   const SpeciesSpec first = species(bodies[0]), second = species(bodies[1]),
                     mover = first.travels(domain_.dimension()) ? first : second;
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "-%s_%svelocity: two rigid bodies (%s and %s) come within a cell of each other at t = %.6g; accepted: "
-                "paths with fluid between the bodies",
-                mover.name.c_str(), mover.turns(domain_.dimension()) ? "angular_" : "", first.name.c_str(),
-                second.name.c_str(), time);
-  contact_message_ = text;
+  contact_message_ = print(
+      "-%s_%svelocity: two rigid bodies (%s and %s) come within a cell of each other at t = %.6g; accepted: "
+      "paths with fluid between the bodies",
+      mover.name.c_str(), mover.turns(domain_.dimension()) ? "angular_" : "", first.name.c_str(), second.name.c_str(),
+      time);
 }
 
 PetscErrorCode RigidBodies::fill(double time, std::vector<Phase> *phases) const {

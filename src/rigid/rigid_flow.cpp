@@ -1,7 +1,7 @@
 #include "rigid/rigid_flow.hpp"
 
 #include "base/events.hpp"
-#include "parts/carried_state.hpp"
+#include "parts/state.hpp"
 #include "rigid/rigid_surfaces.hpp"
 
 namespace eulastic {

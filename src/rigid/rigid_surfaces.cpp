@@ -2,7 +2,6 @@
 
 #include "base/events.hpp"
 #include "base/exact_sum.hpp"
-#include "grid/domain.hpp"
 #include "kernels/super_time_stepping.hpp"
 #include "kernels/weno5.hpp"
 #include "rigid/rigid_rows.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/fluid.hpp"
+#include "field/material.hpp"
 #include "field/phase.hpp"
 #include "field/rigid_faces.hpp"
 #include "grid/domain.hpp"

@@ -1,7 +1,8 @@
 #include "run/last_word.hpp"
 
+#include "base/one_line.hpp"
+
 #include <cctype>
-#include <cstdio>
 #include <map>
 
 namespace eulastic {
@@ -21,10 +22,8 @@ std::string quoted(const std::string &word) {
 
 std::string first_word(const Config &config, int ranks) {
   const Int3 &n = config.grid.cells;
-  char text[200];
-  std::snprintf(text, sizeof text, "eulastic %s: %d x %d x %d cells on %d rank%s", EULASTIC_VERSION, n[0], n[1], n[2],
-                ranks, ranks > 1 ? "s" : "");
-  std::string line = text;
+  std::string line = print("eulastic %s: %d x %d x %d cells on %d rank%s", EULASTIC_VERSION, n[0], n[1], n[2], ranks,
+                           ranks > 1 ? "s" : "");
   if (config.threads > 1) line += " of " + std::to_string(config.threads) + " threads";
   return line + "; results go to " + config.output.directory;
 }
@@ -37,8 +36,7 @@ std::string last_word(const ParseResult &parsed, const Ending &end) {
       {"output_failed", "could not write"},
   };
   const std::string &directory = parsed.config.output.directory;
-  char place[100];
-  std::snprintf(place, sizeof place, " at t = %.9g, step %lld; results: ", end.time, static_cast<long long>(end.step));
+  const std::string place = print(" at t = %.9g, step %lld; results: ", end.time, static_cast<long long>(end.step));
   std::string line = "eulastic: " + words.at(end.reason) + place + directory;
   if (end.checkpoint.empty()) return line + "; there is no checkpoint to continue from";
   const bool whole = end.reason == "time_end" || end.reason == "steps";

@@ -7,10 +7,8 @@
 #include "grid/domain.hpp"
 #include "run/run.hpp"
 #include "scene/check_only.hpp"
-#include "scene/overlap_warning.hpp"
 #include "scene/rank_work.hpp"
 #include "scene/scene_warnings.hpp"
-#include "scene/wall_distance_warning.hpp"
 
 #include <cstdio>
 

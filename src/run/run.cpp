@@ -19,11 +19,9 @@
 #include "scene/balance.hpp"
 #include "scene/lumens.hpp"
 #include "scene/memory.hpp"
-#include "scene/overlap_warning.hpp"
 #include "scene/red_cell.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_warnings.hpp"
-#include "scene/wall_distance_warning.hpp"
 
 #include <cstdio>
 #include <cstdlib>

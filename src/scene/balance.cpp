@@ -1,11 +1,10 @@
 #include "scene/balance.hpp"
 
+#include "base/one_line.hpp"
 #include "boxes/share_out.hpp"
 #include "grid/domain.hpp"
-#include "scene/cuts.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace eulastic {
 namespace {
@@ -153,19 +152,53 @@ private:
 PetscErrorCode balance_ranks(const Solver &solver, GridSpec *spec, std::string *line) {
   PetscFunctionBeginUser;
   double before = 1, after = 1;
-  char text[120];
   Balance balance(solver);
   PetscCall(balance.find(spec, &before, &after));
   if (solver.domain().ranks() == 1)
-    std::snprintf(text, sizeof text, "balance: one rank has all cells");
+    *line = print("balance: one rank has all cells");
   else if (spec->starts[0].empty())
-    std::snprintf(text, sizeof text,
-                  "balance: the even split is kept, heaviest rank %.3g of the mean, at best %.3g (estimate)", before,
+    *line = print("balance: the even split is kept, heaviest rank %.3g of the mean, at best %.3g (estimate)", before,
                   after);
   else
-    std::snprintf(text, sizeof text, "balance: heaviest rank %.3g -> %.3g of the mean (estimate)", before, after);
-  *line = text;
+    *line = print("balance: heaviest rank %.3g -> %.3g of the mean (estimate)", before, after);
   PetscFunctionReturn(0);
+}
+
+namespace {
+
+// First unit of each rank if every rank takes as many units from the end as `bound` allows. `sums`: costs of all units
+// before each.
+std::vector<int> earliest(const std::vector<double> &sums, int parts, double bound) {
+  std::vector<int> first(parts + 1, static_cast<int>(sums.size()) - 1);
+  for (int p = parts - 1; p >= 0; --p) {
+    const auto end = sums.begin() + first[p + 1];
+    first[p] = static_cast<int>(std::lower_bound(sums.begin(), end, *end - bound) - sums.begin());
+  }
+  return first;
+}
+
+}  // namespace
+
+std::vector<int> equal_cuts(const std::vector<double> &cost, int parts, int least) {
+  std::vector<double> sums{0};
+  for (const double c : cost) sums.push_back(sums.back() + c);
+  const int units = static_cast<int>(cost.size());
+  double too_low = 0, bound = sums.back();
+  for (int halving = 0; halving < 50; ++halving) {
+    const double middle = (too_low + bound) / 2;
+    (earliest(sums, parts, middle)[0] > 0 ? too_low : bound) = middle;
+  }
+  std::vector<int> first = earliest(sums, parts, bound);
+  first[0] = 0;
+  for (int p = 1; p < parts; ++p) {
+    const double share = sums.back() * p / parts, reach = sums[first[p - 1]] + bound;
+    int cut = static_cast<int>(std::lower_bound(sums.begin(), sums.end(), share) - sums.begin());
+    if (cut > 0 && share - sums[cut - 1] < sums[cut] - share) --cut;
+    const int last = static_cast<int>(std::upper_bound(sums.begin(), sums.end(), reach) - sums.begin()) - 1;
+    cut = std::max(std::min(cut, last), first[p]);
+    first[p] = std::clamp(cut, first[p - 1] + least, units - (parts - p) * least);
+  }
+  return first;
 }
 
 }  // namespace eulastic

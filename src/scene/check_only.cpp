@@ -1,5 +1,6 @@
 #include "scene/check_only.hpp"
 
+#include "base/one_line.hpp"
 #include "flow/limits.hpp"
 #include "flow/super_time_stepping.hpp"
 #include "pressure/multigrid.hpp"
@@ -107,9 +108,7 @@ public:
     const FlowScale scale = flow_scale(config_);
     const double nu = config_.fluid.kinematic_viscosity(), speed = scale.largest_speed();
     const auto estimate = [&](const std::string &name, std::optional<double> value, const std::string &how) {
-      char text[32] = "unknown";
-      if (value) std::snprintf(text, sizeof text, "%.6g", *value);
-      report.line(name, "%s%s", text, how.c_str());
+      report.text += name + ": " + (value ? print("%.6g", *value) : "unknown") + how + "\n";
     };
     const auto capillary = [&](const SpeciesSpec &spec, double per_rate, const char *what) {
       std::optional<double> number;
@@ -124,8 +123,7 @@ public:
       if (!scale.speed_is_bound && nu > 0) reynolds = speed * scale.length / nu;
       report.line("velocity scale (estimate)", "%s%.6g", scale.speed_is_bound ? "less than " : "", speed);
       estimate("shear rate (estimate)", scale.shear_rate, "");
-      char length[48];
-      std::snprintf(length, sizeof length, " (length %.6g)", scale.length);
+      const std::string length = print(" (length %.6g)", scale.length);
       estimate("Reynolds number", reynolds, nu > 0 ? length : " (no viscosity)");
     }
     for (const SpeciesSpec &spec : config_.species) {

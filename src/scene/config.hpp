@@ -3,13 +3,12 @@
 
 #include "adhesion/adhesion_pair.hpp"
 #include "bodies/placement.hpp"
-#include "field/fluid.hpp"
+#include "field/material.hpp"
 #include "field/open_sides.hpp"
 #include "field/phase.hpp"
 #include "field/sides.hpp"
 #include "flow/initial_velocity.hpp"
 #include "grid/box.hpp"
-#include "io/snapshot_format.hpp"
 #include "parts/method.hpp"
 
 #include <string>
@@ -80,8 +79,8 @@ struct OutputControl {
   double snapshot_interval = 0;  ///< simulated time; 0 = no snapshots, else the start and the end are written too
   std::vector<std::string> snapshot_fields{"velocity", "pressure", "solid_fraction", "body", "wall_shear_stress"};
   bool snapshot_single = true;  ///< single precision
-  SnapshotFormat snapshot_format = SnapshotFormat::xdmf;
-  double series_interval = 0;  ///< simulated time; after parsing never 0: time_end / 200 unless given
+  bool snapshot_vti = false;    ///< also a file of VTK's XML image data for each snapshot
+  double series_interval = 0;   ///< simulated time; after parsing never 0: time_end / 200 unless given
 };
 
 /// One profile: the means over planes of cells, or the values along a line through `line`.

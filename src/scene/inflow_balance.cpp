@@ -68,7 +68,7 @@ std::string check_inflow_balance(const Config &config) {
     for (int high = 0; high < 2; ++high) {
       if (config.sides[d][high].kind != SideKind::inflow) continue;
       inflows.push_back({&config.sides[d][high].given, area_of_side(config, d)});
-      names += (names.empty() ? "-boundary_" : ", -boundary_") + std::string{"xyz"[d]} + (high ? "max" : "min");
+      names += (names.empty() ? "-boundary_" : ", -boundary_") + side_name(d, high);
     }
   const std::string way_out =
       " and cannot leave the box; accepted: a pressure or outflow boundary, or inflow boundaries whose flow rates have "

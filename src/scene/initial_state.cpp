@@ -37,17 +37,13 @@ void for_high_wall(const Box &box, const Staggering &at, int d, View field, Visi
   Int3 begin{}, end{};
   for (int e = 0; e < 3; ++e) end[e] = box.points_end(e, at[e]);
   begin[d] = end[d] - 1;
-  for (int k = begin[2]; k < end[2]; ++k)
-    for (int j = begin[1]; j < end[1]; ++j)
-      for (int i = begin[0]; i < end[0]; ++i) visit(&field(i, j, k));
+  for_points({begin, end}, [&](int i, int j, int k) { visit(&field(i, j, k)); });
 }
 
 }  // namespace
 
 PetscErrorCode InitialState::fail(const std::string &problem) const {
-  PetscFunctionBeginUser;
-  PetscCall(fail_together(domain_->comm(), problem.empty() ? problem : config_->initial_state + ": " + problem));
-  PetscFunctionReturn(0);
+  return fail_together(domain_->comm(), problem.empty() ? problem : config_->initial_state + ": " + problem);
 }
 
 PetscErrorCode InitialState::open() {

@@ -1,12 +1,12 @@
 #include "scene/lumens.hpp"
 
+#include "base/one_line.hpp"
 #include "bodies/shapes.hpp"
 #include "scene/inflow_balance.hpp"
 #include "scene/open_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace eulastic {
 namespace {
@@ -14,13 +14,8 @@ namespace {
 constexpr double least_cells = 8, most_reynolds = 1e4, round_off = 1e-9;
 
 bool flat(const Config &config) { return config.grid.cells[2] == 1; }
-std::string name_of(int d, int high) { return std::string{"xyz"[d]} + (high ? "max" : "min"); }
 
-std::string number(double value, int digits = 4) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
+std::string number(double value, int digits = 4) { return print("%.*g", digits, value); }
 
 // Smallest and largest prescribed volume per time of an inflow boundary.
 std::array<double, 2> given_flow(const Config &config, int d, int high) {
@@ -63,7 +58,7 @@ std::string side_line(const Config &config, int d, int high) {
   const OpenPart &part = config.open_parts[d][high];
   const SideKind kind = config.sides[d][high].kind;
   const char *what = kind == SideKind::inflow ? "inflow" : kind == SideKind::pressure ? "pressure" : "outflow";
-  std::string line = "boundary " + name_of(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
+  std::string line = "boundary " + side_name(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
                      number(part.area) + " of " + number(area_of_side(config, d));
   if (part.lumens > 1) line += ", " + std::to_string(part.lumens) + " lumens, the widest";
   if (std::isfinite(part.width))
@@ -99,7 +94,7 @@ std::vector<std::string> lumen_warnings(const Config &config) {
   std::vector<std::string> warnings;
   for_crossed_sides(config, [&](int d, int high) {
     const OpenPart &part = config.open_parts[d][high];
-    const std::string side = "-boundary_" + name_of(d, high) + ": ";
+    const std::string side = "-boundary_" + side_name(d, high) + ": ";
     if (part.lumens == 0 && part.share < 1)
       warnings.push_back(side + "rigid bodies cover all of this open boundary, so that nothing passes it");
     if (part.lumens > 0 && part.cells < least_cells * (1 - round_off))

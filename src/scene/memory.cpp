@@ -1,5 +1,6 @@
 #include "scene/memory.hpp"
 
+#include "base/one_line.hpp"
 #include "bodies/shapes.hpp"
 #include "boxes/free_bodies.hpp"
 #include "field/open_sides.hpp"
@@ -10,8 +11,6 @@
 
 #include <unistd.h>
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace eulastic {
@@ -115,12 +114,10 @@ double ghosted_cells(const Config &config, const Int3 &parts) {
 }
 
 std::string too_little(int ranks, double needed, double limit, double share) {
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "-grid_cells: the fields need about %.4g GB on a node (%d ranks), which has %.4g GB; accepted: fewer "
-                "cells, more nodes, or another -guard_memory (%g now; off disables the check)",
-                1e-9 * needed, ranks, 1e-9 * limit, share);
-  return text;
+  return print(
+      "-grid_cells: the fields need about %.4g GB on a node (%d ranks), which has %.4g GB; accepted: fewer "
+      "cells, more nodes, or another -guard_memory (%g now; off disables the check)",
+      1e-9 * needed, ranks, 1e-9 * limit, share);
 }
 
 }  // namespace
@@ -150,12 +147,10 @@ PetscErrorCode check_sizes(MPI_Comm comm, const Config &config, std::string *ref
   if (share > 0 && needed > share * limit) {
     problem = too_little(node_ranks, needed, limit, share);
   } else if (values > std::numeric_limits<PetscInt>::max()) {
-    char text[240];
-    std::snprintf(text, sizeof text,
-                  "-grid_cells: a rank would hold a field of %.0f numbers, more than this PETSc can count; accepted: "
-                  "at most %.0f, so more ranks or a PETSc of 64-bit indices",
-                  values, double(std::numeric_limits<PetscInt>::max()));
-    problem = text;
+    problem = print(
+        "-grid_cells: a rank would hold a field of %.0f numbers, more than this PETSc can count; accepted: "
+        "at most %.0f, so more ranks or a PETSc of 64-bit indices",
+        values, double(std::numeric_limits<PetscInt>::max()));
   }
   PetscCall(catch_together([&] { return fail_together(comm, problem); }, refusal));
   PetscFunctionReturn(0);

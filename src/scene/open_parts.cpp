@@ -15,7 +15,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool flat(const Config &config) { return config.grid.cells[2] == 1; }
-std::string name_of(int d, int high) { return std::string{"xyz"[d]} + (high ? "max" : "min"); }
 
 // The largest solid fraction in every cell that one of the bodies of a species has there.
 std::string fill(const Config &config, std::size_t s, const CellWindow &cells, View fraction) {
@@ -190,7 +189,7 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
   std::string inlet, outlet, covered;
   bool way_out = false;
   for_crossed_sides(config, [&](int d, int high) {
-    const std::string side = name_of(d, high);
+    const std::string side = side_name(d, high);
     if (config.sides[d][high].kind != SideKind::inflow) {
       way_out = way_out || !closed[d][high];
       outlet = side;

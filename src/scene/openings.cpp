@@ -2,15 +2,11 @@
 
 #include "base/exact_sum.hpp"
 #include "base/number_rows.hpp"
-#include "base/petsc.hpp"
 #include "base/rank_zero.hpp"
 #include "field/open_sides.hpp"
-#include "grid/domain.hpp"
 #include "io/hdf5_input.hpp"
 #include "io/option_values.hpp"
-#include "io/profile_file.hpp"
 #include "scene/inflow_balance.hpp"
-#include "scene/time_tables.hpp"
 
 #include <petscksp.h>
 #include <algorithm>
@@ -19,7 +15,77 @@
 namespace eulastic {
 namespace {
 
-std::string name_of(int d, int high) { return std::string{"xyz"[d]} + (high ? "max" : "min"); }
+constexpr double round_off = 1e-9;  // of times and values that a text gives with some ten digits
+
+// `source`: what gives the period, for messages.
+std::string repeat(const std::string &source, double period, TimeCourse *course) {
+  auto &table = course->table;
+  const double length = table.back()[0] - table.front()[0];
+  if (length > period * (1 + round_off))
+    return source + ": " + to_text(period) + " is shorter than the table, whose times go from " +
+           to_text(table.front()[0]) + " to " + to_text(table.back()[0]) + "; accepted: " + to_text(length) +
+           " or longer";
+  if (length >= period * (1 - round_off)) {  // the last row is the first one of the next period
+    const double first = table.front()[1], last = table.back()[1];
+    if (std::fabs(last - first) > round_off * course->largest())
+      return source + ": the table ends with " + to_text(last) + " and begins again with " + to_text(first) +
+             "; accepted: the same value, or a period that is longer than the table";
+    table.pop_back();
+  }
+  course->period = period;
+  return {};
+}
+
+// Reads a table of rows time,value, whose times ascend, and the period that a line "# period T" gives it. Collective.
+// Returns what is wrong, or nothing.
+std::string read_table(const std::string &path, TimeCourse *course) {
+  static const RowFormat format{"rows of time,value", {"time", "value"}, {2}, false, "period"};
+  std::string text;
+  if (!read_file(path, &text)) return "cannot read " + path + "; accepted: " + format.expected;
+  const auto add_row = [&](const std::vector<double> &row) {
+    if (!course->table.empty() && !(row[0] > course->table.back()[0]))
+      return "time " + to_text(row[0]) + " does not come after the one before; times must be ascending";
+    course->table.push_back({row[0], row[1]});
+    return std::string();
+  };
+  return read_rows(path, text, format, add_row, &course->period);
+}
+
+// Reads a number, or a table. Collective. Returns what is wrong, or nothing.
+std::string read_course(const std::string &text, TimeCourse *course) {
+  double value;
+  if (read_reals(text, any_number, &value, 1).empty()) {
+    course->value = value;
+    return {};
+  }
+  return read_table(text, course);
+}
+
+// Lets a table repeat as it or `spec` says, or refuses one that does not reach from 0 to the end of the run without
+// being held. `side`: "-inflow_xmin"; `option`: the one that names `file`, the table. Returns one line, or nothing.
+std::string extend_table(const OpeningSpec &spec, const std::string &side, const std::string &option,
+                         const std::string &file, double end, TimeCourse *course) {
+  if (course->table.empty()) {
+    if (spec.period == 0 && !spec.hold) return {};
+    return side + (spec.hold ? "_table_hold" : "_table_period") + ": applies only to a table; accepted: with a table";
+  }
+  if (spec.hold && spec.period > 0)
+    return side + "_table_hold: given beside " + side + "_table_period; accepted: one of them";
+  const std::string own = file + " says \"# period " + to_text(course->period) + "\"";
+  if (spec.hold && course->period > 0)
+    return side + "_table_hold: " + own + " and cannot be held, too; accepted: false, or a table without a period";
+  if (spec.hold) return {};
+  if (spec.period > 0 && course->period > 0 && std::fabs(spec.period / course->period - 1) > round_off)
+    return side + "_table_period: " + to_text(spec.period) + ", but " + own + "; accepted: the same, or one of them";
+  if (spec.period > 0) return repeat(side + "_table_period", spec.period, course);
+  if (course->period > 0) return repeat(option + ": the period of " + file, course->period, course);
+  const double first = course->table.front()[0], last = course->table.back()[0];
+  if (first <= 0 && last >= end * (1 - round_off)) return {};
+  return option + ": " + file + " goes from time " + to_text(first) + " to " + to_text(last) + ", the run from 0 to " +
+         to_text(end) + "; accepted: a table of all the run, " + side +
+         "_table_period to repeat it (in the file: # period T), or " + side +
+         "_table_hold true to hold its first and its last value";
+}
 
 std::size_t cells_of_side(const Config &config, int d) {
   std::size_t cells = 1;
@@ -75,13 +141,13 @@ std::string resolve_wall(const Config &config, int d, int high, Side *side) {
   if (spec.velocity.empty()) return {};
   const std::string wrong = read_reals(spec.velocity, any_number, side->motion.velocity.data(), 3);
   if (wrong.empty()) return {};
-  return "-boundary_" + name_of(d, high) + "_velocity: " + wrong +
+  return "-boundary_" + side_name(d, high) + "_velocity: " + wrong +
          "; accepted: for a wall 3 numbers, separated by commas";
 }
 
 std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   const OpeningSpec &spec = config.openings[d][high];
-  const std::string name = "-boundary_" + name_of(d, high);
+  const std::string name = "-boundary_" + side_name(d, high);
   if (!spec.velocity.empty() && !spec.flow_rate.empty())
     return name + "_flow_rate: given beside " + name + "_velocity; accepted: one of them";
   SideProfile profile;
@@ -115,7 +181,7 @@ std::string resolve_inlet_generator(const Config &config, int d, int high, Side 
   const double length = config.openings[d][high].generator_length, h = config.grid.length[d] / config.grid.cells[d];
   constexpr int least = 8, left = 8;  // cells
   if (length == 0) return {};
-  const std::string name = "-boundary_" + name_of(d, high) + "_generator_length: ";
+  const std::string name = "-boundary_" + side_name(d, high) + "_generator_length: ";
   const double cells = std::round(length / h), most = config.grid.cells[d] - left;
   if (cells < least || cells > most)
     return name + to_text(length) + " is " + to_text(length / h) + " cells; accepted: from " + to_text(least) + " to " +
@@ -164,7 +230,7 @@ std::string resolve_openings(Config *config) {
       if (side.kind != SideKind::pressure) continue;
       const OpeningSpec &spec = config->openings[d][high];
       side.given = {0, 0, 0, {}};
-      const std::string name = "-boundary_" + name_of(d, high), option = name + "_pressure";
+      const std::string name = "-boundary_" + side_name(d, high), option = name + "_pressure";
       if (std::string wrong = resolve_load(spec, name, &side.load); !wrong.empty()) return wrong;
       if (std::string wrong = read_course(spec.pressure, &side.given); !wrong.empty()) return option + ": " + wrong;
       if (std::string wrong = extend_table(spec, name, option, spec.pressure, config->time.end, &side.given);
@@ -359,7 +425,7 @@ PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const 
       double sum = 0;
       for (std::size_t cell = 0; cell < profile.size(); ++cell) sum += profile[cell] *= open.open(cell);
       if (!(std::fabs(sum) > 0)) {
-        *wrong = std::string("-boundary_") + "xyz"[d] + (high ? "max" : "min") +
+        *wrong = "-boundary_" + side_name(d, high) +
                  ": rigid bodies cover all of this inflow boundary; accepted: a boundary that is partly open";
         PetscFunctionReturn(0);
       }

@@ -1,4 +1,5 @@
-#include "scene/overlap_warning.hpp"
+#include "base/one_line.hpp"
+#include "scene/scene_warnings.hpp"
 
 #include "base/deliver.hpp"
 #include "bodies/near_places.hpp"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <set>
 #include <utility>
@@ -45,14 +45,13 @@ std::string describe(const Config &config, const Overlap &first, long count) {
     return spec.shape == Shape::voxels ? std::numeric_limits<double>::infinity() : volume_in_box(spec, config.grid);
   };
   const bool moves_two = !two.material().anchored && two.shape != Shape::voxels, of_one = volume(one) < volume(two);
-  char text[512];
-  std::snprintf(text, sizeof text,
-                "%ld bodies overlap as placed; first body %d (%s) and body %d (%s), which share %s of at least %.3g, "
-                "%.3g %% of body %d; ",
-                count, first.body, one.name.c_str(), first.other, two.name.c_str(),
-                config.grid.cells[2] == 1 ? "an area" : "a volume", first.volume,
-                100 * first.volume / std::min(volume(one), volume(two)), of_one ? first.body : first.other);
-  return text + remedy(moves_two ? two : one);
+  return print(
+             "%ld bodies overlap as placed; first body %d (%s) and body %d (%s), which share %s of at least %.3g, "
+             "%.3g %% of body %d; ",
+             count, first.body, one.name.c_str(), first.other, two.name.c_str(),
+             config.grid.cells[2] == 1 ? "an area" : "a volume", first.volume,
+             100 * first.volume / std::min(volume(one), volume(two)), of_one ? first.body : first.other) +
+         remedy(moves_two ? two : one);
 }
 
 // Bodies near this rank and those of a species from a file. `overlaps`: labels, in any order.

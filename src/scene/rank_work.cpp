@@ -1,6 +1,7 @@
 #include "scene/rank_work.hpp"
 
 #include "base/deliver.hpp"
+#include "base/one_line.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_places.hpp"
 #include "bodies/overlap.hpp"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <tuple>
 
@@ -186,12 +186,9 @@ PetscErrorCode describe_work(MPI_Comm comm, const Config &config, int ranks, std
   std::array<double, 3> parts{};
   const std::vector<double> work = estimate.total(std::move(list), &parts);
   const double sum = parts[0] + parts[1] + parts[2], mean = sum / ranks;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "%.3f; of all work %.3g %% in the flow, %.3g %% in phases of the grid, %.3g %% in boxes\n",
-                *std::max_element(work.begin(), work.end()) / mean, 100 * parts[0] / sum, 100 * parts[1] / sum,
-                100 * parts[2] / sum);
-  *line = name + text;
+  *line = name + print("%.3f; of all work %.3g %% in the flow, %.3g %% in phases of the grid, %.3g %% in boxes\n",
+                       *std::max_element(work.begin(), work.end()) / mean, 100 * parts[0] / sum, 100 * parts[1] / sum,
+                       100 * parts[2] / sum);
   PetscFunctionReturn(0);
 }
 

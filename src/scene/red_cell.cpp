@@ -1,9 +1,9 @@
 #include "scene/red_cell.hpp"
 
+#include "base/one_line.hpp"
 #include "bodies/shapes.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace eulastic {
 
@@ -19,13 +19,11 @@ std::vector<std::string> red_cell_lines(const Config &config) {
   for (const SpeciesSpec &spec : config.species) {
     if (spec.law != Law::red_cell) continue;
     const Membrane &m = spec.membrane;
-    char text[400];
-    std::snprintf(text, sizeof text,
-                  "red cells %s: surface shear modulus %g, modulus of area %g (a real one is 1000 times as stiff), "
-                  "bending modulus %g, viscosity %g of %g outside",
-                  spec.name.c_str(), m.shear_modulus, m.largest_modulus() - m.shear_modulus, m.bending_modulus,
-                  spec.viscosity.value_or(config.fluid.viscosity), config.fluid.viscosity);
-    lines.emplace_back(text);
+    lines.push_back(
+        print("red cells %s: surface shear modulus %g, modulus of area %g (a real one is 1000 times as stiff), "
+              "bending modulus %g, viscosity %g of %g outside",
+              spec.name.c_str(), m.shear_modulus, m.largest_modulus() - m.shear_modulus, m.bending_modulus,
+              spec.viscosity.value_or(config.fluid.viscosity), config.fluid.viscosity));
   }
   return lines;
 }
@@ -45,18 +43,16 @@ std::vector<std::string> coarse_surfaces(const Config &config, bool of_membranes
     if (spec.shape == Shape::biconcave) thickness = spec.radius * red_cell_waist;
     const double least = spec.is_membrane() ? apart : 2 * radius_of_drop;
     if (!(thickness > 0 && thickness < round_off * least * spacing)) continue;
-    char text[300];
     if (spec.is_membrane())
-      std::snprintf(text, sizeof text,
-                    "membranes of %s are %.3g apart where they are thinnest, %.2g cells: the grid does not resolve the "
-                    "fluid between them; use a spacing of at most %.3g",
-                    spec.name.c_str(), thickness, thickness / spacing, thickness / least);
+      warnings.push_back(
+          print("membranes of %s are %.3g apart where they are thinnest, %.2g cells: the grid does not resolve the "
+                "fluid between them; use a spacing of at most %.3g",
+                spec.name.c_str(), thickness, thickness / spacing, thickness / least));
     else
-      std::snprintf(text, sizeof text,
-                    "drops of %s are %.3g in radius where they are thinnest, %.2g cells: their surface is too coarse "
-                    "to hold them together; use a spacing of at most %.3g",
-                    spec.name.c_str(), 0.5 * thickness, 0.5 * thickness / spacing, thickness / least);
-    warnings.emplace_back(text);
+      warnings.push_back(
+          print("drops of %s are %.3g in radius where they are thinnest, %.2g cells: their surface is too coarse "
+                "to hold them together; use a spacing of at most %.3g",
+                spec.name.c_str(), 0.5 * thickness, 0.5 * thickness / spacing, thickness / least));
   }
   return warnings;
 }

@@ -1,6 +1,5 @@
 #include "scene/rigid_paths.hpp"
 
-#include "bodies/shapes.hpp"
 #include "io/option_values.hpp"
 #include "openings/inlet_generators.hpp"
 

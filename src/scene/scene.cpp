@@ -4,7 +4,6 @@
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_places.hpp"
 #include "boxes/boxed_bodies.hpp"
-#include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 #include "rigid/rigid_bodies.hpp"
 #include "scene/initial_state.hpp"

@@ -1,11 +1,10 @@
 #include "scene/scene_warnings.hpp"
 
+#include "base/one_line.hpp"
 #include "flow/viscosity.hpp"
 #include "scene/lumens.hpp"
 #include "scene/red_cell.hpp"
 #include "solids/exterior.hpp"
-
-#include <cstdio>
 
 namespace eulastic {
 
@@ -19,14 +18,12 @@ void add_attachment_warnings(const Config &config, std::vector<std::string> *war
   for (const SpeciesSpec &spec : config.species) {
     const Material material = spec.material();
     if (!material.anchored || damps_short_waves(spacing, dimension, config.fluid, material)) continue;
-    char text[400];
-    std::snprintf(text, sizeof text,
-                  "%s is anchored and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
-                  "viscosity %g, so that its strain at the surface is of first order only, as for a free body; use a "
-                  "spacing of at most %.3g",
-                  spec.name.c_str(), viscosity_of(material, config.fluid) / config.fluid.density,
-                  damping_spacing(config.fluid, material));
-    warnings->emplace_back(text);
+    warnings->push_back(
+        print("%s is anchored and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
+              "viscosity %g, so that its strain at the surface is of first order only, as for a free body; use a "
+              "spacing of at most %.3g",
+              spec.name.c_str(), viscosity_of(material, config.fluid) / config.fluid.density,
+              damping_spacing(config.fluid, material)));
   }
 }
 
@@ -39,13 +36,11 @@ void add_lag_warnings(const Config &config, std::vector<std::string> *warnings) 
     ViscosityContrast alone(config.fluid);
     alone.add(spec.material(), 0);
     if (!alone.exists() || alone.settles()) continue;
-    char text[400];
-    std::snprintf(text, sizeof text,
-                  "%s is %.3g times as viscous as the fluid: beyond a factor of 20 the velocity lags by about %.0f "
-                  "steps; use a shorter -time_step",
-                  spec.name.c_str(), viscosity_of(spec.material(), config.fluid) / config.fluid.viscosity,
-                  4 * all.most / all.least);
-    warnings->emplace_back(text);
+    warnings->push_back(
+        print("%s is %.3g times as viscous as the fluid: beyond a factor of 20 the velocity lags by about %.0f "
+              "steps; use a shorter -time_step",
+              spec.name.c_str(), viscosity_of(spec.material(), config.fluid) / config.fluid.viscosity,
+              4 * all.most / all.least));
   }
 }
 

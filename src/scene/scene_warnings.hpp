@@ -1,6 +1,7 @@
 // Warnings about scenes whose grid or time step is too coarse.
 #pragma once
 
+#include "base/petsc.hpp"
 #include "scene/config.hpp"
 
 namespace eulastic {
@@ -10,5 +11,15 @@ namespace eulastic {
 /// viscosity lies so far from the fluid's that the velocity lags (ViscosityContrast::settles); or whose surface the
 /// grid does not resolve (coarse_surface_warnings). Then those of lumen_warnings().
 std::vector<std::string> scene_warnings(const Config &config);
+
+/// Collective. `warning`: one line with the number of overlapping bodies, the first pair and a remedy; empty without
+/// overlaps (bodies/overlap.hpp), or with -initial_state, which may define bodies of its own. `refusal`: one line if
+/// two bodies are at the same position, and then no warning. The same on any number of ranks.
+PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *warning, std::string *refusal);
+
+/// Collective. `warning`: one line that names the first such body and a remedy; empty if there is none, or with
+/// -initial_state, which may define bodies of its own. Walls: solid boundaries of the box and rigid bodies at rest,
+/// except those from files. Random placement keeps a cell free. The same on any number of ranks.
+PetscErrorCode find_membranes_near_walls(MPI_Comm comm, const Config &config, std::string *warning);
 
 }  // namespace eulastic

@@ -68,7 +68,7 @@ std::string check_walls(const Config &config) {
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const Real3 &velocity = config.sides[d][side].motion.velocity;
-      const std::string name = std::string("boundary_") + "xyz"[d] + (side ? "max" : "min") + "_velocity";
+      const std::string name = "boundary_" + side_name(d, side) + "_velocity";
       if (velocity[d] != 0) return "-" + name + ": the " + "xyz"[d] + " component is normal to the wall and must be 0";
       if (const std::string wrong = check_vector(config, name, velocity); !wrong.empty()) return wrong;
     }

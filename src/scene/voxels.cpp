@@ -1,6 +1,7 @@
 #include "scene/voxels.hpp"
 
 #include "base/events.hpp"
+#include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/closed_surface.hpp"
 #include "bodies/fill_phase.hpp"
@@ -98,10 +99,8 @@ private:
                                  const Real3 &high) {
     for (int d = 0; d < 3; ++d)
       if (!(low[d] < grid.length[d] && high[d] > 0)) {
-        char text[128];
-        std::snprintf(text, sizeof text, ": it is outside the box: %c = %.6g ... %.6g, the box is 0 ... %.6g", "xyz"[d],
-                      low[d], high[d], grid.length[d]);
-        return file + text;
+        return file + print(": it is outside the box: %c = %.6g ... %.6g, the box is 0 ... %.6g", "xyz"[d], low[d],
+                            high[d], grid.length[d]);
       }
     return {};
   }

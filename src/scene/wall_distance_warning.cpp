@@ -1,4 +1,5 @@
-#include "scene/wall_distance_warning.hpp"
+#include "base/one_line.hpp"
+#include "scene/scene_warnings.hpp"
 
 #include "bodies/crowd.hpp"
 #include "bodies/overlap.hpp"
@@ -89,14 +90,11 @@ PetscErrorCode find_membranes_near_walls(MPI_Comm comm, const Config &config, st
   if (first == INT_MAX) PetscFunctionReturn(0);
   std::size_t s = 0;
   while (first >= labels[s + 1]) ++s;
-  char text[300];
-  std::snprintf(
-      text, sizeof text,
+  *warning = print(
       "the membrane of body %d (%s) starts less than a cell, %.3g, from a wall: the film of fluid between them "
       "is not resolved and makes energy while it pushes it away; place it farther away, or use a "
       "smaller spacing",
       first, config.species[s].name.c_str(), config.grid.longest_spacing());
-  *warning = text;
   PetscFunctionReturn(0);
 }
 

@@ -1,7 +1,6 @@
 #include "solids/exterior.hpp"
 
 #include "base/events.hpp"
-#include "field/fluid.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/stencils.hpp"

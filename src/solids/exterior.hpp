@@ -8,8 +8,8 @@
 
 #include "base/petsc.hpp"
 #include "field/extend_layer.hpp"
-#include "field/fluid.hpp"
 #include "field/ghost_exchange.hpp"
+#include "field/material.hpp"
 #include "field/phase.hpp"
 #include "grid/box.hpp"
 #include "solids/transport.hpp"

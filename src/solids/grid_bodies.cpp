@@ -1,7 +1,7 @@
 #include "solids/grid_bodies.hpp"
 
 #include "field/law.hpp"
-#include "parts/carried_state.hpp"
+#include "parts/state.hpp"
 #include "solids/transport.hpp"
 #include "solids/unresolved.hpp"
 

@@ -11,16 +11,11 @@
 namespace eulastic {
 namespace {
 
-// Local cells begin <= (i, j, k) < end.
-struct Extent {
-  Int3 begin, end;
-  Extent grown(int d, int low, int high) const {
-    Extent extent = *this;
-    extent.begin[d] -= low;
-    extent.end[d] += high;
-    return extent;
-  }
-};
+Extent grown(Extent cells, int d, int low, int high) {
+  cells.begin[d] -= low;
+  cells.end[d] += high;
+  return cells;
+}
 
 // Transport along one direction. The strides begin with this direction.
 struct DirectionalSplit {
@@ -94,9 +89,9 @@ long advance_direction(const Box &box, const DirectionalSplit &t, const ActiveSe
   };
   std::atomic<long> planes{0};
   const auto mixed = box.dimension() == 2 ? mixed_fluxes_2d : mixed_fluxes_3d;
-  pass(faces, t.cells.grown(t.direction, 0, 1),
+  pass(faces, grown(t.cells, t.direction, 0, 1),
        [&](const Segment *begin, const Segment *end) { uniform_fluxes(t, begin, end); });
-  pass(cells, t.cells.grown(t.direction, 1, 1),
+  pass(cells, grown(t.cells, t.direction, 1, 1),
        [&](const Segment *begin, const Segment *end) { planes += mixed(t, begin, end); });
   pass(cells, t.cells, [&](const Segment *begin, const Segment *end) { apply_fluxes(t, begin, end); });
   return planes;
@@ -119,7 +114,7 @@ std::array<Extent, 3> cells_of_directions(const Box &box, const Int3 &order) {
   for (int s = box.dimension() - 1; s >= 0; --s) {
     boxes[s] = {{0, 0, 0}, box.cells()};
     for (int d = 0; d < box.dimension(); ++d) {
-      boxes[s] = boxes[s].grown(d, layers[d], layers[d]);
+      boxes[s] = grown(boxes[s], d, layers[d], layers[d]);
       layers[d] += d == order[s] ? 2 : 1;
     }
   }

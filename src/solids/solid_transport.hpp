@@ -2,13 +2,20 @@
 // docs/method.md, section 7. The phase may be on the grid of all ranks or in a box that is complete on this rank.
 #pragma once
 
-#include "field/phase_place.hpp"
+#include "base/petsc.hpp"
+#include "field/phase.hpp"
 #include "solids/exterior.hpp"
 #include "solids/surface_correction.hpp"
+#include "solids/transport.hpp"
 
 #include <cstdint>
 
 namespace eulastic {
+
+/// Enforces B_ab^2 <= B_aa B_bb on evolving edges, with the means of the diagonals over the four centres around;
+/// transport_tensor() keeps the diagonals themselves >= 0. Reads B at centres in one ghost layer, where an edge beside
+/// them evolves, and one ghost of phi.
+PetscErrorCode limit_shear(const Box &box, const Phase &phase, Field &tensor);
 
 class SolidTransport {
 public:

@@ -2,14 +2,13 @@
 
 #include "base/events.hpp"
 #include "field/law.hpp"
-#include "grid/box.hpp"
 #include "kernels/surface.hpp"
 #include "kernels/tensor.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
+#include <cstdint>
 #include <utility>
 
 namespace eulastic {

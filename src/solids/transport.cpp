@@ -2,7 +2,7 @@
 
 #include "base/events.hpp"
 #include "grid/blocks.hpp"
-#include "grid/skipping.hpp"
+#include "grid/occupied_rows.hpp"
 #include "kernels/tensor.hpp"
 #include "kernels/upper_convected.hpp"
 #include "kernels/weno5.hpp"

@@ -1,10 +1,8 @@
 #include "solids/unresolved.hpp"
 
 #include "base/events.hpp"
-#include "grid/domain.hpp"
 #include "kernels/stencils.hpp"
 
-#include <algorithm>
 #include <vector>
 
 namespace eulastic {

@@ -10,7 +10,7 @@
 #include "openings/bodies_at_sides.hpp"
 #include "openings/inlet_generators.hpp"
 #include "openings/loaded_outlets.hpp"
-#include "parts/carried_state.hpp"
+#include "parts/state.hpp"
 #include "rigid/rigid_flow.hpp"
 #include "solids/grid_bodies.hpp"
 #include "solids/species_force.hpp"

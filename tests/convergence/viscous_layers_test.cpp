@@ -1,6 +1,6 @@
 // Layers of viscosity 1 and lambda, along the grid and across it: steady shear, and the slowest mode.
 #include "flow/correction.hpp"
-#include "flow/divergence.hpp"
+#include "flow/projection.hpp"
 #include "flow/super_time_stepping.hpp"
 #include "flow/viscous_stress.hpp"
 #include "pressure/smac.hpp"

@@ -61,33 +61,6 @@ void check_index(const SharedDirectory &directory, int snapshots) {
   EXPECT_EQ(items, hdf);
 }
 
-// Every link leads to the dataset of its name, of a shape that cells have, and the list names each snapshot.
-void check_vtkhdf(const SharedDirectory &directory, const Domain &domain, int snapshots) {
-  const std::string series = text_of(directory / "snapshots.vtkhdf.series");
-  for (int n = 0; n < snapshots; ++n) {
-    const std::string name = "snapshot_00000" + std::to_string(n);
-    EXPECT_NE(series.find('"' + name + ".vtkhdf\", \"time\": " + format_double(0.5 * n) + "}"), std::string::npos);
-    Hdf5File file;
-    std::string type;
-    std::vector<double> extent, spacing;
-    ASSERT_EQ(file.open(run_communicator(), directory / (name + ".vtkhdf")), 0);
-    ASSERT_EQ(file.read_attribute("VTKHDF", "Type", &type), 0);
-    ASSERT_EQ(file.read_attribute("VTKHDF", "WholeExtent", &extent), 0);
-    ASSERT_EQ(file.read_attribute("VTKHDF", "Spacing", &spacing), 0);
-    EXPECT_EQ(type, "ImageData");
-    const Int3 &cells = domain.domain_cells();
-    EXPECT_EQ(extent, (std::vector<double>{0, double(cells[0]), 0, double(cells[1]), 0, double(cells[2])}));
-    EXPECT_EQ(spacing, std::vector<double>(domain.spacing().begin(), domain.spacing().end()));
-    for (const char *field : {"velocity", "pressure", "body", "left_cauchy_green_xy"}) {
-      std::vector<hsize_t> shape, own_shape;
-      const auto values = whole(directory / (name + ".vtkhdf"), std::string("VTKHDF/CellData/") + field, &shape);
-      EXPECT_EQ(values, whole(directory / (name + ".h5"), field, &own_shape)) << field;
-      EXPECT_EQ(shape, own_shape);
-    }
-    EXPECT_FALSE(file.has("VTKHDF/CellData/velocity_x"));
-  }
-}
-
 void check_snapshot(const Int3 &cells, int phase_count) {
   const SharedDirectory directory;
   const NumberedFields scene(cells);
@@ -104,11 +77,10 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   SnapshotSelection selection;
   selection.left_cauchy_green = true;
   SnapshotFields fields(scene.domain);
-  SnapshotWriter writer(scene.domain, directory / "", SnapshotFormat::vtkhdf);
+  SnapshotWriter writer(scene.domain, directory / "", true);
   for (int n = 0; n < 2; ++n)
     ASSERT_EQ(writer.write(0.5 * n, 10 * n, fields.collect(selection, velocity, pressure, phases)), 0);
   check_index(directory, 2);
-  check_vtkhdf(directory, scene.domain, 2);
 
   Hdf5File file;
   ASSERT_EQ(file.open(run_communicator(), directory / "snapshot_000001.h5"), 0);
@@ -176,17 +148,16 @@ TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
   SnapshotField field;
   field.format.name = "pressure";
   field.components = {pressure[0]};
-  SnapshotWriter first(scene.domain, directory / "", SnapshotFormat::vtkhdf),
-      second(scene.domain, directory / "", SnapshotFormat::vtkhdf);
+  SnapshotWriter first(scene.domain, directory / "", true), second(scene.domain, directory / "", true);
   for (int n = 0; n < 4; ++n) ASSERT_EQ(first.write(n, n, {field}), 0);
   ASSERT_EQ(second.resume(1, true), 0);
   ASSERT_EQ(second.write(0.25, 9, {field}), 0);
-  EXPECT_TRUE(fs::exists(directory / "snapshot_000001.vtkhdf"));
-  EXPECT_FALSE(fs::exists(directory / "snapshot_000002.vtkhdf"));
-  const std::string series = text_of(directory / "snapshots.vtkhdf.series");
-  EXPECT_NE(series.find("000000.vtkhdf\", \"time\": 0}"), std::string::npos) << series;
-  EXPECT_NE(series.find("000001.vtkhdf\", \"time\": 0.25}"), std::string::npos) << series;
-  EXPECT_EQ(series.find("000002"), std::string::npos) << series;
+  EXPECT_TRUE(fs::exists(directory / "snapshot_000001.vti"));
+  EXPECT_FALSE(fs::exists(directory / "snapshot_000002.vti"));
+  const std::string list = text_of(directory / "snapshots.pvd");
+  EXPECT_NE(list.find("timestep=\"0\" part=\"0\" file=\"snapshot_000000.vti\""), std::string::npos) << list;
+  EXPECT_NE(list.find("timestep=\"0.25\" part=\"0\" file=\"snapshot_000001.vti\""), std::string::npos) << list;
+  EXPECT_EQ(list.find("000002"), std::string::npos) << list;
 }
 
 TEST(Snapshot, OnePhase) { check_snapshot({5, 13, 7}, 1); }

@@ -3,7 +3,7 @@
 #include "../support/verbs.hpp"
 #include "box.hpp"
 #include "flow/correction.hpp"
-#include "flow/divergence.hpp"
+#include "flow/projection.hpp"
 #include "flow/super_time_stepping.hpp"
 #include "pressure/acm.hpp"
 #include "pressure/acm_sweeps.hpp"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""snapshots.xdmf, walls.xdmf, the .vtkhdf and the .vti files as ParaView sees them. Every item is followed to its dataset: shape,
-type, place and values. Debian's VTK must read the .vtkhdf files; where pvpython is installed, ParaView's own two XDMF
+"""snapshots.xdmf, walls.xdmf and the .vti files as ParaView sees them. Every item is followed to its dataset: shape,
+type, place and values. Debian's VTK must read the .vti files; where pvpython is installed, ParaView's own two XDMF
 readers must see the same."""
 import json
 import os
@@ -43,28 +43,6 @@ for path in sys.argv[1:]:
 print("SEEN" + json.dumps(seen))
 """
 
-# All cells of a .vtkhdf file as VTK reads them. Before 9.3 its reader takes as many cells as there are points in the extent
-# that it is asked for, so it is asked for one point less in each direction.
-READ_VTKHDF = """
-import sys
-import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkVersion
-from vtkmodules.vtkIOHDF import vtkHDFReader
-reader = vtkHDFReader()
-reader.SetFileName(sys.argv[1])
-reader.UpdateInformation()
-old = (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()) < (9, 3)
-less = old * numpy.array([0, 1, 0, 1, 0, 1])
-whole = numpy.array(reader.GetOutputInformation(0).Get(reader.GetExecutive().WHOLE_EXTENT()))
-reader.UpdateExtent([int(n) for n in whole - less])
-image = reader.GetOutput()
-fields = {image.GetCellData().GetArrayName(n): vtk_to_numpy(image.GetCellData().GetArray(n))
-          for n in range(image.GetCellData().GetNumberOfArrays())}
-numpy.savez(sys.argv[2], origin=image.GetOrigin(), spacing=image.GetSpacing(), extent=image.GetExtent() + less, **fields)
-"""
-
-
 # All cells of a .vti file as VTK reads them.
 READ_VTI = """
 import sys
@@ -86,10 +64,6 @@ def start(*command):
     return subprocess.run(command, capture_output=True, text=True)
 
 
-def listed(directory):
-    return json.loads((directory / "snapshots.vtkhdf.series").read_text())["files"]
-
-
 def numbers(item):
     return numpy.array([float(x) for x in item.text.split()])
 
@@ -101,7 +75,7 @@ class Paraview(unittest.TestCase):
         cls.addClassCleanup(room.cleanup)
         cls.room = pathlib.Path(room.name)
         cls.directory = cls.room / "out"
-        done = start(BINARY, *SCENE, "-snapshot_format", "vtkhdf", "-output_dir", cls.directory)
+        done = start(BINARY, *SCENE, "-output_dir", cls.directory)
         assert done.returncode == 0, done.stderr
         cls.last = h5py.File(cls.directory / "snapshot_000002.h5")
         cls.addClassCleanup(cls.last.close)
@@ -162,85 +136,6 @@ class Paraview(unittest.TestCase):
                 exact = -0.5 if grid.get("Name").endswith("ymax") else 0.5
                 numpy.testing.assert_allclose(stress[..., 0], exact, rtol=1e-6)
                 numpy.testing.assert_allclose(stress[..., 1:], 0, atol=1e-12)
-
-    def check_vtkhdf(self, directory, cells=CELLS):
-        """Each listed file has the grid of cells and every field that the XDMF index has, without a copy."""
-        for entry in listed(directory):
-            snapshot = h5py.File((directory / entry["name"]).with_suffix(".h5"))
-            with snapshot, h5py.File(directory / entry["name"]) as file:
-                self.assertEqual(numpy.squeeze(snapshot.attrs["time"]), entry["time"])
-                self.assertEqual(list(file), ["VTKHDF"])
-                image = file["VTKHDF"]
-                numpy.testing.assert_array_equal(image.attrs["Version"], [1, 0])
-                numpy.testing.assert_array_equal(image.attrs["WholeExtent"], [0, cells[0], 0, cells[1], 0, cells[2]])
-                numpy.testing.assert_array_equal(image.attrs["Origin"], 0)
-                numpy.testing.assert_array_equal(image.attrs["Direction"], numpy.eye(3).ravel())
-                self.assertEqual({image.attrs[name].dtype.kind for name in ("Version", "WholeExtent")}, {"i"})
-                self.assertEqual(image.attrs["Type"], b"ImageData")
-                self.assertEqual(h5py.h5a.open(image.id, b"Type").get_type().get_cset(), h5py.h5t.CSET_ASCII)
-                numpy.testing.assert_array_equal(image.attrs["Spacing"], snapshot.attrs["spacing"])
-                drawn = {name for name, field in snapshot.items() if not name.startswith("wall_shear_stress_") and
-                         not field.attrs["location"].decode().startswith("face")}
-                self.assertEqual(set(image["CellData"]), drawn)
-                self.assertGreater(len(drawn), 2)
-                for name in drawn:
-                    link = image["CellData"].get(name, getlink=True)
-                    self.assertEqual(link.filename, pathlib.Path(snapshot.filename).name)
-                    numpy.testing.assert_array_equal(image["CellData"][name][...], snapshot[name][...])
-
-    def test_vtkhdf(self):
-        names = [entry["name"] for entry in listed(self.directory)]
-        self.assertEqual(names, [f"snapshot_{n:06}.vtkhdf" for n in range(3)])
-        self.check_vtkhdf(self.directory)
-
-    @unittest.skipUnless(pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules").exists(), "VTK is not installed")
-    def test_reader_of_vtk(self):
-        seen = self.room / "seen.npz"
-        done = start(sys.executable, "-c", READ_VTKHDF, str(self.directory / "snapshot_000002.vtkhdf"), str(seen))
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        seen = numpy.load(seen)
-        numpy.testing.assert_array_equal(seen["extent"], [0, 12, 0, 10, 0, 8])
-        numpy.testing.assert_array_equal(seen["origin"], 0)
-        numpy.testing.assert_array_equal(seen["spacing"], self.last.attrs["spacing"])
-        fields = set(seen) - {"extent", "origin", "spacing"}
-        self.assertEqual(fields, {"velocity", "pressure", *(name + tail for name in ("body", "solid_fraction")
-                                                            for tail in ("", "_cell", "_seed"))})
-        for name in fields:
-            numpy.testing.assert_array_equal(seen[name].ravel(), self.last[name][...].ravel(), name)
-
-    def test_vtkhdf_is_beside_the_rest(self):
-        """Other files are the same; in a copy that goes on, and in place of another run, links lead to what is beside them."""
-        plain, later = self.room / "plain", self.room / "later"
-        done = start(BINARY, *SCENE, "-output_dir", plain)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual([path.name for path in plain.glob("*vtkhdf*")], [])
-        for name in "snapshots.xdmf", "walls.xdmf":
-            self.assertEqual((plain / name).read_bytes(), (self.directory / name).read_bytes(), name)
-        with h5py.File(plain / "snapshot_000002.h5") as file:
-            self.assertEqual(set(file), set(self.last))
-            for name in file:
-                self.assertEqual(file[name].attrs["checksum"], self.last[name].attrs["checksum"], name)
-        shutil.copytree(self.directory, later)
-        longer = [".02" if word == ".01" else word for word in SCENE]
-        done = start(BINARY, *longer, "-snapshot_format", "vtkhdf", "-restart", later, "-output_dir", later)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual([entry["name"] for entry in listed(later)], [f"snapshot_{n:06}.vtkhdf" for n in range(5)])
-        self.check_vtkhdf(later)
-        done = start(BINARY, *SCENE, "-snapshot_format", "vtkhdf", "-output_overwrite", "-output_dir", later)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(len(list(later.glob("*.vtkhdf"))), 3)
-        self.check_vtkhdf(later)
-
-    def test_vtkhdf_in_2d(self):
-        flat = self.room / "flat"
-        scene = ("-grid_cells 16,12,1 -grid_length 1.6,1.2,.1 -species disc -disc_shape sphere -disc_radius .3 "
-                 "-disc_centre .8,.6,0 -disc_shear_modulus 1 -time_step .002 -time_end .004 -snapshot_interval .002 "
-                 "-snapshot_fields pressure,left_cauchy_green,body,solid_fraction -snapshot_precision double")
-        done = start(BINARY, *scene.split(), "-snapshot_format", "vtkhdf", "-output_dir", flat)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.check_vtkhdf(flat, [16, 12, 1])
-        with h5py.File(flat / "snapshot_000001.vtkhdf") as file:
-            self.assertIn("left_cauchy_green_xy", file["VTKHDF/CellData"])
 
     def read_vti(self, path):
         done = start(sys.executable, "-c", READ_VTI, str(path), str(self.room / "seen.npz"))
@@ -303,7 +198,7 @@ class Paraview(unittest.TestCase):
     def test_other_formats_are_refused(self):
         done = start(BINARY, *SCENE, "-snapshot_format", "vtk", "-output_dir", self.room / "none")
         self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, r"\A[^\n]*-snapshot_format[^\n]*xdmf, vtkhdf, vti[^\n]*\n\Z")
+        self.assertRegex(done.stderr, r"\A[^\n]*-snapshot_format[^\n]*xdmf, vti[^\n]*\n\Z")
         self.assertFalse((self.room / "none").exists())
 
     @unittest.skipUnless(shutil.which("pvpython"), "pvpython is not installed")

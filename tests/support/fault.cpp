@@ -11,7 +11,7 @@
 //   heap     malloc finds its memory overwritten and aborts, with its lock held
 //   exit     it leaves without a word
 // EULASTIC_FSYNC="NAME COUNT": the COUNT-th fsync of a file with NAME in its path fails, and a later one of that file
-// is reported. Deadline (io/deadline.hpp) waits three seconds, not five minutes.
+// is reported. Deadline (io/fail_together.hpp) waits three seconds, not five minutes.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <hdf5.h>

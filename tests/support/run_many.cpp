@@ -6,7 +6,7 @@
 //   wait                                           all ranks wait for each other
 // A run starts as soon as its ranks have ended what comes before it in PLAN.
 #include "base/rank_zero.hpp"
-#include "grid/skipping.hpp"
+#include "grid/occupied_rows.hpp"
 #include "grid/threads.hpp"
 #include "run/program.hpp"
 #include "support/sleeping_barrier.hpp"

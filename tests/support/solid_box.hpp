@@ -48,7 +48,7 @@ struct Solid {
       fill_everywhere(domain, phases[0].tensor.field[c], components[c].at, B[components[c].a][components[c].b]);
   }
 
-  // Transport keeps the diagonal of B above 0 (solids/positive_definite.hpp); here it is there already.
+  // Transport keeps the diagonal of B above 0 (solids/solid_transport.hpp); here it is there already.
   void make_positive() {
     for (int a = 0; a < domain.dimension(); ++a) B[a][a].c += 20;
     fill();

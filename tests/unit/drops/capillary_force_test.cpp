@@ -2,7 +2,7 @@
 // bits.
 #include "drops/capillary_force.hpp"
 #include "drops/surface_tension.hpp"
-#include "grid/skipping.hpp"
+#include "grid/occupied_rows.hpp"
 #include "grid/threads.hpp"
 #include "support/interface_scene.hpp"
 

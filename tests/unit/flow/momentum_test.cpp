@@ -2,7 +2,7 @@
 // spacings.
 #include "kernels/momentum.hpp"
 #include "flow/correction.hpp"
-#include "flow/divergence.hpp"
+#include "flow/projection.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"
 

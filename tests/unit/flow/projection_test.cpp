@@ -1,6 +1,6 @@
 // The classic step fuses several equations into one pass over memory; the bits are those of separate passes.
+#include "flow/projection.hpp"
 #include "flow/correction.hpp"
-#include "flow/divergence.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/momentum.hpp"
 #include "support/polynomials.hpp"

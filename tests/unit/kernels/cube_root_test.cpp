@@ -1,5 +1,5 @@
 // The cube root is compared with that of libm in long double; its bits do not depend on the vector length.
-#include "kernels/cube_root.hpp"
+#include "kernels/plane.hpp"
 
 #include <gtest/gtest.h>
 

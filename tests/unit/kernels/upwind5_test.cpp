@@ -1,5 +1,5 @@
 // The upwind difference of fifth order is exact for polynomials of fifth degree, upwind, and its own mirror image.
-#include "kernels/upwind5.hpp"
+#include "kernels/weno5.hpp"
 
 #include <gtest/gtest.h>
 

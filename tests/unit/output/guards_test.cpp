@@ -1,6 +1,5 @@
 // Guards against numbers measured by hand: each trips alone, and only beyond its bound.
 #include "output/guards.hpp"
-#include "diagnostics/places.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>

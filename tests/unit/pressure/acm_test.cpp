@@ -1,6 +1,6 @@
 // (12) against a search for the minimum, its guards, and the divergence after one step of the solver.
 #include "pressure/acm.hpp"
-#include "flow/divergence.hpp"
+#include "flow/projection.hpp"
 
 #include "flow/correction.hpp"
 #include "support/polynomials.hpp"

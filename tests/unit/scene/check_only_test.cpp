@@ -124,7 +124,8 @@ TEST(CheckOnly, LumensOfSides) {
       "\nboundary xmin: inflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity 0.3, flow rate "
       "0.6032 into the box, Reynolds number of the lumen 0.48\n");
   has(tube,
-      "\nboundary xmax: outflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity -0.3, flow rate "
+      "\nboundary xmax: outflow, open area 2.011 of 5.76, lumen 1.6 wide, 32 cells across; mean velocity -0.3, flow "
+      "rate "
       "-0.6032 into the box, Reynolds number of the lumen 0.48\n");
   has(tube, "\nvelocity scale (estimate): 0.6\n");  // in the middle of a developed flow
   EXPECT_EQ(tube.find("boundary_x"), std::string::npos) << tube;
@@ -132,7 +133,8 @@ TEST(CheckOnly, LumensOfSides) {
       "-grid_cells 16,16,1 -boundary_y wall -boundary_xmax pressure -species v -v_shape slab -v_axis y -v_interval "
       ".2,.5 -v_law rigid -fluid_viscosity 1e-5 -boundary_xmin_angular_frequency 1");
   has(two,
-      "\nboundary xmin: inflow, open length 0.7 of 1, 2 lumens, the widest 0.5 wide, 3.2 cells across the narrowest; mean "
+      "\nboundary xmin: inflow, open length 0.7 of 1, 2 lumens, the widest 0.5 wide, 3.2 cells across the narrowest; "
+      "mean "
       "velocity up to 0.3, flow rate up to 0.21 into the box, Reynolds number of the lumen up to 1.5e+04\n");
   for (const char *side : {"-boundary_xmin: ", "-boundary_xmax: "})
     for (const char *what : {"only 3.2 cells across the lumen", "Reynolds number 1.5e+04 of the lumen"})

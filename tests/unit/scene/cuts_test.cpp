@@ -1,6 +1,6 @@
 // Cuts by cost: whole units, the fewest cells of a rank, and the least largest sum that there is.
-#include "scene/cuts.hpp"
 #include "grid/domain.hpp"
+#include "scene/balance.hpp"
 
 #include <gtest/gtest.h>
 

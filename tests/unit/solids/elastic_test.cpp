@@ -1,5 +1,5 @@
 // Elastic force and stretching on fields for which central differences are exact, in every component; energy.
-#include "flow/divergence.hpp"
+#include "flow/projection.hpp"
 #include "kernels/upper_convected.hpp"
 #include "support/solid_box.hpp"
 

@@ -1,5 +1,5 @@
-// B becomes positive definite in the sense of positive_definite.hpp, and does not change where it is.
-#include "solids/positive_definite.hpp"
+// B becomes positive definite in the sense of solid_transport.hpp, and does not change where it is.
+#include "solids/solid_transport.hpp"
 #include "support/all_segments.hpp"
 #include "support/polynomials.hpp"
 #include "support/verbs.hpp"

@@ -2,7 +2,7 @@
 #include "drops/surface_tension.hpp"
 #include "membranes/membrane_transport.hpp"
 #include "openings/loaded_outlets.hpp"
-#include "parts/carried_state.hpp"
+#include "parts/state.hpp"
 #include "solids/grid_bodies.hpp"
 #include "solids/species_force.hpp"
 #include "support/scene.hpp"
