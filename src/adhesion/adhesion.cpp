@@ -1,8 +1,8 @@
 #include "adhesion/adhesion.hpp"
 
 #include "adhesion/grid_place.hpp"
-#include "base/deliver.hpp"
 #include "base/events.hpp"
+#include "base/send_to_ranks.hpp"
 #include "boxes/receptors.hpp"
 #include "parts/state.hpp"
 
@@ -194,13 +194,13 @@ PetscErrorCode Adhesion::ask_grid(double dt) {
   const bool any = std::any_of(spec_.pairs.begin(), spec_.pairs.end(),
                                [this](const AdhesionPair &pair) { return !is_of_bodies(pair); });
   if (!any) PetscFunctionReturn(0);
-  PetscCall(deliver(domain.comm(), to, &questions));
+  PetscCall(send_to_ranks(domain.comm(), to, &questions));
   to.clear();
   for (Question &question : questions) {
     answer(dt, &question);
     to.push_back(question.rank);
   }
-  PetscCall(deliver(domain.comm(), to, &questions));
+  PetscCall(send_to_ranks(domain.comm(), to, &questions));
   for (const Question &question : questions) {
     if (question.pair == Question::anchor)
       boxed_.receptors(question.body)[question.receptor].anchor = question.place;
@@ -249,7 +249,7 @@ PetscErrorCode Adhesion::tell_near() {
       to.push_back(rank);
     }
   });
-  PetscCall(deliver(flow_.domain.comm(), to, &own));
+  PetscCall(send_to_ranks(flow_.domain.comm(), to, &own));
   near_.swap(own);
   std::sort(near_.begin(), near_.end(),
             [](const NearReceptor &one, const NearReceptor &other) { return one.name < other.name; });
@@ -307,7 +307,7 @@ PetscErrorCode Adhesion::renew() {
 PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
   PetscFunctionBeginUser;
   if (phases != &flow_.now.phases) PetscFunctionReturn(0);
-  VerbScope scope(Verb::adhesion);
+  EventScope scope(Event::adhesion);
   travel_ += flow_.now.crossing_rate * dt;
   broken_.clear();
   PetscCall(look_around());
@@ -359,7 +359,7 @@ PetscErrorCode Adhesion::add_rate(const MomentumRate &rate) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Adhesion::add_power(const FlowLook &, double *power) {
+PetscErrorCode Adhesion::add_power(const SynchronisedBodies &, double *power) {
   PetscFunctionBeginUser;
   PetscCall(forces_.add_power(power));
   PetscFunctionReturn(0);

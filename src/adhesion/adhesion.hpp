@@ -37,7 +37,7 @@ public:
   PetscErrorCode add_rate(const MomentumRate &rate) override;
   PetscErrorCode end_step() override;
   void mark_forced_rows(std::vector<char> *rows) const override { forces_.mark_rows(rows); }
-  PetscErrorCode add_power(const FlowLook &look, double *power) override;
+  PetscErrorCode add_power(const SynchronisedBodies &look, double *power) override;
 
   const std::vector<AdhesionPair> &pairs() const { return spec_.pairs; }
   /// Places receptors on bodies that have none. Collective, as all that follow.

@@ -1,7 +1,7 @@
 // Adhesion: how bonds break and form.
 #include "adhesion/adhesion.hpp"
-#include "base/deliver.hpp"
 #include "base/philox.hpp"
+#include "base/send_to_ranks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +70,7 @@ Foot Adhesion::foot_on_wall(const AdhesionPair &pair, const Real3 &place) const 
   double nearest = HUGE_VAL;
   Foot foot;
   for (const auto [d, high] : domain.sides()) {
-    if (flow_.spec.sides[d][high].kind != SideKind::wall) continue;
+    if (flow_.spec.sides[d][high].kind != BoundaryKind::wall) continue;
     const double end = high ? domain.domain_shape().length[d] : 0;
     const double distance = std::fabs(place[d] - end);
     Real3 on_wall = place;
@@ -165,11 +165,11 @@ PetscErrorCode Adhesion::form_bonds_of_bodies(double dt) {
   if (!(reach_of_bodies() > 0)) PetscFunctionReturn(0);
   find_proposals(dt, &proposals, &to);
   for (const Proposal &proposal : proposals) wanting.insert(proposal.from);
-  PetscCall(deliver(comm, to, &proposals));
+  PetscCall(send_to_ranks(comm, to, &proposals));
   judge(wanting, &proposals);
   to.clear();
   for (const Proposal &proposal : proposals) to.push_back(proposal.rank);
-  PetscCall(deliver(comm, to, &proposals));
+  PetscCall(send_to_ranks(comm, to, &proposals));
   for (const Proposal &proposal : proposals)
     if (proposal.accepted)
       bind(proposal.from, proposal.to, proposal.pair, find_near(proposal.to)->place, find_own(proposal.from));

@@ -2,8 +2,8 @@
 #include "adhesion/adhesion.hpp"
 #include "adhesion/grid_place.hpp"
 #include "base/body_range.hpp"
-#include "base/deliver.hpp"
 #include "base/exact_sum.hpp"
+#include "base/send_to_ranks.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -61,7 +61,7 @@ PetscErrorCode Adhesion::find_ends(std::vector<End> *ends) const {
     on_surfaces.push_back(end);
     to.push_back(GridPlace(domain, end.anchor).owner(domain));
   }
-  PetscCall(deliver(domain.comm(), to, &on_surfaces));
+  PetscCall(send_to_ranks(domain.comm(), to, &on_surfaces));
   for (End &end : on_surfaces) {
     find_body(&end);
     if (end.body > 0) ends->push_back(end);
@@ -77,7 +77,7 @@ PetscErrorCode Adhesion::measure(int bodies, std::vector<BodyBonds> *owned) cons
   PetscFunctionBeginUser;
   PetscCall(find_ends(&ends));
   for (const End &end : ends) to.push_back(BodyRange::owner(end.body - 1, bodies, domain.ranks()));
-  PetscCall(deliver(domain.comm(), to, &ends));
+  PetscCall(send_to_ranks(domain.comm(), to, &ends));
   std::sort(ends.begin(), ends.end(), [](const End &one, const End &other) { return one.receptor < other.receptor; });
   owned->assign(range.size(), {});
   for (const End &end : ends) {
@@ -105,7 +105,7 @@ PetscErrorCode Adhesion::lines(std::vector<BondLine> *lines) const {
     if (partner.body > 0 && partner < name) continue;
     lines->push_back({name, partner, receptor.place, receptor.anchor, bond.tension, receptor.since});
   }
-  PetscCall(deliver(flow_.domain.comm(), std::vector<int>(lines->size(), 0), lines));
+  PetscCall(send_to_ranks(flow_.domain.comm(), std::vector<int>(lines->size(), 0), lines));
   std::sort(lines->begin(), lines->end(),
             [](const BondLine &one, const BondLine &other) { return one.receptor < other.receptor; });
   PetscFunctionReturn(0);
@@ -114,7 +114,7 @@ PetscErrorCode Adhesion::lines(std::vector<BondLine> *lines) const {
 PetscErrorCode Adhesion::take_events(std::vector<BondEvent> *events) {
   PetscFunctionBeginUser;
   *events = std::exchange(events_, {});
-  PetscCall(deliver(flow_.domain.comm(), std::vector<int>(events->size(), 0), events));
+  PetscCall(send_to_ranks(flow_.domain.comm(), std::vector<int>(events->size(), 0), events));
   std::sort(events->begin(), events->end(), [](const BondEvent &one, const BondEvent &other) {
     return std::tie(one.time, one.formed, one.receptor) < std::tie(other.time, other.formed, other.receptor);
   });

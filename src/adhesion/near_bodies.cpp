@@ -1,6 +1,6 @@
 #include "adhesion/near_bodies.hpp"
 
-#include "base/deliver.hpp"
+#include "base/send_to_ranks.hpp"
 #include "grid/cell_ranks.hpp"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ PetscErrorCode find_surroundings(const Domain &domain, const std::vector<BodyBlo
       here.push_back({body, domain.rank()});
       to.push_back(rank);
     }
-  PetscCall(deliver(domain.comm(), to, &here));
+  PetscCall(send_to_ranks(domain.comm(), to, &here));
   to.clear();
   const auto answer = [&](const Registered &one, const NearBody &near) {
     answers.push_back({one.body.number, near});
@@ -65,7 +65,7 @@ PetscErrorCode find_surroundings(const Domain &domain, const std::vector<BodyBlo
       answer(other, {one.body.number, one.rank, one.body.box});
     }
   }
-  PetscCall(deliver(domain.comm(), to, &answers));
+  PetscCall(send_to_ranks(domain.comm(), to, &answers));
   std::sort(answers.begin(), answers.end(), [](const Answer &one, const Answer &other) {
     return std::pair(one.to, one.near.number) < std::pair(other.to, other.near.number);
   });

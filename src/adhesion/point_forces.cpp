@@ -1,8 +1,8 @@
 #include "adhesion/point_forces.hpp"
 
 #include "adhesion/grid_place.hpp"
-#include "base/deliver.hpp"
 #include "base/exact_sum.hpp"
+#include "base/send_to_ranks.hpp"
 #include "grid/cell_ranks.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ PetscErrorCode PointForces::set(std::vector<PointForce> forces) {
       to.push_back(rank);
     }
   }
-  PetscCall(deliver(domain.comm(), to, &forces_));
+  PetscCall(send_to_ranks(domain.comm(), to, &forces_));
   std::sort(forces_.begin(), forces_.end(), [](const PointForce &one, const PointForce &other) {
     return std::tie(one.body, one.receptor, one.end) < std::tie(other.body, other.receptor, other.end);
   });

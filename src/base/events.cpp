@@ -7,7 +7,7 @@
 namespace eulastic {
 namespace {
 
-constexpr int event_count = static_cast<int>(Verb::count);
+constexpr int event_count = static_cast<int>(Event::count);
 constexpr int stage_count = static_cast<int>(Stage::count);
 constexpr std::array<const char *, event_count> event_names = {
     "EulExchange",   "EulWait",     "EulWallGhosts", "EulMomentum", "EulViscous", "EulTension", "EulMembrane",
@@ -37,11 +37,11 @@ PetscErrorCode register_events() {
 }
 
 // A member of a team logs no events: the calling thread adds its flops to the event around the parallel region.
-VerbScope::VerbScope(Verb event) : event_(event) {
+EventScope::EventScope(Event event) : event_(event) {
   if (registered && !TeamMember::is_here()) (void)PetscLogEventBegin(event_ids[static_cast<int>(event)], 0, 0, 0, 0);
 }
 
-VerbScope::~VerbScope() {
+EventScope::~EventScope() {
   if (TeamMember::is_here()) {
     TeamMember::add_flops(flops_);
     return;

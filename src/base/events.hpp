@@ -6,7 +6,7 @@
 namespace eulastic {
 
 /// The routines that -log_view shows as events.
-enum class Verb {
+enum class Event {
   exchange,
   wait,
   wall_ghosts,
@@ -38,16 +38,16 @@ enum class Stage { setup, step, output, count };
 PetscErrorCode register_events();
 
 /// Logs one event from construction to destruction. `flops` may be added at any time in between.
-class VerbScope {
+class EventScope {
 public:
-  explicit VerbScope(Verb event);
-  ~VerbScope();
-  VerbScope(const VerbScope &) = delete;
-  VerbScope &operator=(const VerbScope &) = delete;
+  explicit EventScope(Event event);
+  ~EventScope();
+  EventScope(const EventScope &) = delete;
+  EventScope &operator=(const EventScope &) = delete;
   void flops(double count) noexcept { flops_ += count; }
 
 private:
-  Verb event_;
+  Event event_;
   double flops_ = 0;
 };
 

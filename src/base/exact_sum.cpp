@@ -126,7 +126,7 @@ void ExactSums::flush(int s) noexcept {
 
 void ExactSums::add_row(int s, const double *values, int n, std::int64_t first) noexcept {
   for (int i = 0; i < n;) {
-    const int length = std::min<int>(n - i, block - place_in_block(first + i));
+    const int length = std::min<int>(n - i, block - index_in_block(first + i));
     add(s, lane_sum(values + i, length, first + i));
     i += length;
   }

@@ -42,7 +42,7 @@ class ExactSums {
 public:
   static constexpr int block = 256;
   /// Number of cells before absolute x index x in its block. x may be negative.
-  static int place_in_block(std::int64_t x) noexcept { return static_cast<int>(x & (block - 1)); }
+  static int index_in_block(std::int64_t x) noexcept { return static_cast<int>(x & (block - 1)); }
 
   explicit ExactSums(int count) : sums_(count), buffers_(count) {}
   void clear() noexcept;

@@ -143,7 +143,7 @@ bool read_number(std::string_view word, double *number) {
   return status == std::errc{} && stop == end;
 }
 
-std::size_t mark_length(std::string_view text) { return text.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0; }
+std::size_t byte_order_mark_length(std::string_view text) { return text.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0; }
 
 std::string read_rows(const std::string &path, const std::string &text, const RowFormat &format, const VisitRow &visit,
                       double *named) {
@@ -155,7 +155,7 @@ std::string read_rows(const std::string &path, const std::string &text, const Ro
     return name_line(line, wrong) + "; accepted: " + format.expected;
   };
   long number = 0;
-  for (std::size_t begin = mark_length(text); begin < text.size();) {
+  for (std::size_t begin = byte_order_mark_length(text); begin < text.size();) {
     const std::size_t end = std::min(text.size(), text.find('\n', begin));
     std::string_view line(text.data() + begin, end - begin);
     begin = end + 1;

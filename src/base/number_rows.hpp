@@ -12,7 +12,7 @@ namespace eulastic {
 bool read_number(std::string_view word, double *number);
 
 /// Returns the length in bytes of the UTF-8 byte-order mark at the begin of `text`: 3, or 0 if there is none.
-std::size_t mark_length(std::string_view text);
+std::size_t byte_order_mark_length(std::string_view text);
 
 /// The accepted content of a text of numbers.
 struct RowFormat {

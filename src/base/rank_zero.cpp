@@ -16,7 +16,7 @@ MPI_Comm run_communicator() noexcept { return current == MPI_COMM_NULL ? MPI_COM
 RunOnRanks::RunOnRanks(MPI_Comm comm) noexcept : before_(current) { current = comm; }
 RunOnRanks::~RunOnRanks() { current = before_; }
 
-int share_bytes(void *bytes, std::size_t count, MPI_Comm comm) {
+int broadcast_bytes(void *bytes, std::size_t count, MPI_Comm comm) {
   constexpr std::size_t piece = std::size_t{1} << 26;
   for (std::size_t begin = 0; begin < count; begin += piece) {
     const int length = static_cast<int>(std::min(piece, count - begin));
@@ -32,7 +32,7 @@ bool is_file(const std::string &path) {
   });
 }
 
-bool read_file_here(const std::string &path, std::string *bytes) {
+bool read_file_locally(const std::string &path, std::string *bytes) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return false;  // reading a FIFO or a device might never end
   std::FILE *file = std::fopen(path.c_str(), "re");
@@ -45,7 +45,7 @@ bool read_file_here(const std::string &path, std::string *bytes) {
 }
 
 bool read_file(const std::string &path, std::string *bytes) {
-  const bool success = on_rank_0([&] { return read_file_here(path, bytes); });
+  const bool success = on_rank_0([&] { return read_file_locally(path, bytes); });
   share(bytes);
   return success;
 }

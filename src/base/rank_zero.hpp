@@ -29,18 +29,18 @@ private:
 };
 
 /// Broadcasts bytes of rank 0 in pieces of bounded size. Returns MPI's error code.
-int share_bytes(void *bytes, std::size_t count, MPI_Comm comm = run_communicator());
+int broadcast_bytes(void *bytes, std::size_t count, MPI_Comm comm = run_communicator());
 
 /// Broadcasts `value` of rank 0: a trivially copyable type, or a string or vector of such, which is resized.
 template <class T>
 void share(T *value) {
   if constexpr (std::is_trivially_copyable_v<T>) {
-    (void)share_bytes(value, sizeof *value);
+    (void)broadcast_bytes(value, sizeof *value);
   } else {
     std::size_t count = value->size();
     share(&count);
     value->resize(count);
-    (void)share_bytes(value->data(), count * sizeof *value->data());
+    (void)broadcast_bytes(value->data(), count * sizeof *value->data());
   }
 }
 
@@ -58,7 +58,7 @@ auto on_rank_0(Read read) {
 /// Whether `path` is a regular file, as rank 0 sees it. Collective.
 bool is_file(const std::string &path);
 /// Reads all bytes of a regular file on the calling rank. Returns false if it is no regular file or cannot be read.
-bool read_file_here(const std::string &path, std::string *bytes);
+bool read_file_locally(const std::string &path, std::string *bytes);
 /// Reads all bytes of a regular file on rank 0 and broadcasts them. Returns false if it is no regular file or cannot be
 /// read. Collective.
 bool read_file(const std::string &path, std::string *bytes);

@@ -28,12 +28,12 @@ thread_local double *own_flops = nullptr;  // null: this thread is no TeamMember
 
 }  // namespace
 
-ThreadTeam &ThreadTeam::of_rank() noexcept {
+ThreadTeam &ThreadTeam::team_of_rank() noexcept {
   static ThreadTeam team;
   return team;
 }
 
-bool ThreadTeam::is_in_region() noexcept { return is_inside; }
+bool ThreadTeam::is_in_parallel_region() noexcept { return is_inside; }
 
 void ThreadTeam::set_waiting(Waiting how) noexcept {
   spins_ = how == Waiting::spin ? spins_of_own_core : spins_of_shared_core;
@@ -55,7 +55,7 @@ void ThreadTeam::resize(int size) {
 }
 
 void ThreadTeam::run(int members, Call call, const void *work) {
-  const VerbScope scope(Verb::threads);
+  const EventScope scope(Event::threads);
   call_ = call;
   work_ = work;
   running_.store(members - 1, std::memory_order_relaxed);

@@ -27,13 +27,13 @@ public:
   ThreadTeam &operator=(const ThreadTeam &) = delete;
   /// Returns the team of this rank. Initially it consists of one thread, with Waiting::sleep.
   /// That of this rank: one thread, which sleeps when it waits, until told otherwise.
-  static ThreadTeam &of_rank() noexcept;
+  static ThreadTeam &team_of_rank() noexcept;
   /// Sets the number of threads, 1 to 65,535.
   /// `size`: threads, at least 1 and at most 65,535.
   void resize(int size);
   int size() const noexcept { return static_cast<int>(workers_.size()) + 1; }
   /// Whether the calling thread is inside of run().
-  static bool is_in_region() noexcept;
+  static bool is_in_parallel_region() noexcept;
   /// Must be called outside of run().
   void set_waiting(Waiting how) noexcept;
 

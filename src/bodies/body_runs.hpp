@@ -5,8 +5,8 @@
 #include "base/exact_sum.hpp"
 #include "bodies/body_owners.hpp"
 #include "bodies/unwrap.hpp"
+#include "field/boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "grid/box.hpp"
 #include "grid/threads.hpp"
 
@@ -39,7 +39,7 @@ void for_each_run(const Box &box, const RowPart &part, const std::vector<Phase> 
       if (row.i_begin < row.i_end) start(phase, row);
       const double *own = label.row(row.j, row.k);
       for (int begin = row.i_begin, end; begin < row.i_end; begin = end) {
-        const int block_end = begin + ExactSums::block - ExactSums::place_in_block(first + begin);
+        const int block_end = begin + ExactSums::block - ExactSums::index_in_block(first + begin);
         end = begin + 1;
         while (end < std::min(row.i_end, block_end) && own[end] == own[begin]) ++end;
         const int slot = owners.slot(static_cast<int>(own[begin]) - 1);

@@ -3,7 +3,7 @@
 #include "base/events.hpp"
 #include "bodies/near_places.hpp"
 #include "bodies/volume_fraction.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/threads.hpp"
 
 #include <algorithm>
@@ -94,7 +94,7 @@ void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &p
 }  // namespace
 
 void fill_bodies(const Domain &domain, const Surface &surface, const Places &places, int first_label, Phase *phase) {
-  VerbScope scope(Verb::bodies);
+  EventScope scope(Event::bodies);
   phase->empty(domain, true);
   for (const NumberedPlace &place : places.known)
     if (is_near(domain, domain.rank(), surface, place))
@@ -103,7 +103,7 @@ void fill_bodies(const Domain &domain, const Surface &surface, const Places &pla
 }
 
 void stretch_phase(const Box &box, const SpeciesSpec &spec, Phase *phase) {
-  phase->tensor.field = tensor_at_rest(box);
+  phase->tensor.field = undeformed_tensor(box);
   if (!phase->material.carries_tensor()) return;
   const ConstView fraction = phase->fraction[0];
   for (int d = 0; d < box.dimension(); ++d) {
@@ -118,7 +118,7 @@ void stretch_phase(const Box &box, const SpeciesSpec &spec, Phase *phase) {
 PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label,
                           Phase *phase) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::bodies);
+  EventScope scope(Event::bodies);
   phase->species = spec.name;
   phase->material = spec.material();
   fill_bodies(domain, Surface(spec, domain.dimension()), places, first_label, phase);

@@ -80,7 +80,7 @@ OpenCells open_cells(const Box &box, const RowPart &part, ConstView phi, View la
     double *own = label.row(row.j, row.k);
     for (int i = row.i_begin; i < row.i_end; ++i) {
       if (fraction[i] <= label_threshold) {
-        if (own[i] == 0) continue;  // no write: the page may be shared (Field::at_rest)
+        if (own[i] == 0) continue;  // no write: the page may be shared (Field::on_demand)
         own[i] = -own[i];
         cells.emptied.push_back({i, row.j, row.k});
         continue;
@@ -106,7 +106,7 @@ OpenCells new_cells(const Box &box, const RowPart &part, const OccupiedRows &row
 
 PetscErrorCode carry(const Box &box, GhostExchange &exchange, bool only_new, Phase *phase) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::bodies);
+  EventScope scope(Event::bodies);
   PetscCall(exchange.update_ghosts(phase->fraction, 1, &phase->rows));
   const ConstView phi = phase->fraction[0];
   const View label = phase->label[0];

@@ -1,12 +1,12 @@
 #include "bodies/measures.hpp"
 
-#include "base/deliver.hpp"
 #include "base/events.hpp"
 #include "base/exact_sum.hpp"
+#include "base/send_to_ranks.hpp"
 #include "bodies/body_runs.hpp"
 #include "bodies/body_sums.hpp"
 #include "bodies/unwrap.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/threads.hpp"
 
 #include <petscblaslapack.h>
@@ -212,7 +212,7 @@ BodyMeasure measure_in_box(const BodyInBox &body, const RowEnergy &energy) {
     energy(box, phase, row, density.data());
     for (int begin = row.i_begin, end; begin < row.i_end; begin = end) {
       const int first = layout.begin[0] + begin;
-      end = std::min(row.i_end, begin + ExactSums::block - ExactSums::place_in_block(first));
+      end = std::min(row.i_end, begin + ExactSums::block - ExactSums::index_in_block(first));
       const Run run{phase, 0, begin, end, row.j, row.k, first};
       for (int d = 0; d < box.dimension(); ++d) {
         const double *face = run.of(*body.velocity, d);
@@ -242,7 +242,7 @@ BodyMeasure measure_in_box(const BodyInBox &body, const RowEnergy &energy) {
 
 PetscErrorCode BodyTracker::follow(const Domain &domain, const std::vector<Phase> &phases) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::bodies);
+  EventScope scope(Event::bodies);
   BodyOwners owners;
   std::vector<Int3> references;
   PetscCall(connect(domain, phases, {}, &owners, &references));
@@ -273,7 +273,7 @@ PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phas
                                     const RowEnergy &energy, std::vector<BodyMeasure> *result,
                                     const std::vector<BodyInBox> &boxed) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::bodies);
+  EventScope scope(Event::bodies);
   BodyOwners owners;
   std::vector<Int3> references;
   PetscCall(connect(domain, phases, {}, &owners, &references));
@@ -305,7 +305,7 @@ PetscErrorCode BodyTracker::measure(const Domain &domain, const std::vector<Phas
     measured.push_back(measure_in_box(body, energy));
     ranks.push_back(BodyRange::owner(body.number - 1, bodies(), domain.ranks()));
   }
-  PetscCall(deliver(domain.comm(), ranks, &measured));
+  PetscCall(send_to_ranks(domain.comm(), ranks, &measured));
   for (const BodyMeasure &body : measured) (*result)[body.label - 1 - owners.owned().begin] = body;
   PetscFunctionReturn(0);
 }
@@ -329,7 +329,7 @@ PetscErrorCode BodyTracker::give_to_owners(const Domain &domain, std::vector<Kno
   std::vector<int> owners;
   PetscFunctionBeginUser;
   for (const Known &one : known) owners.push_back(BodyRange::owner(one.body, bodies(), domain.ranks()));
-  PetscCall(deliver(domain.comm(), owners, &known));
+  PetscCall(send_to_ranks(domain.comm(), owners, &known));
   std::sort(known.begin(), known.end(), [](const Known &a, const Known &b) { return a.body < b.body; });
   references_.clear();
   for (const Known &one : known) references_.push_back(one.reference);
@@ -412,7 +412,7 @@ PetscErrorCode BodyTracker::set_last_references(const Domain &domain, const std:
     known.push_back({label - 1, cell, 0});
     owners.push_back(BodyRange::owner(label - 1, bodies(), domain.ranks()));
   }
-  PetscCall(deliver(domain.comm(), owners, &known));
+  PetscCall(send_to_ranks(domain.comm(), owners, &known));
   const int first = BodyRange::of(bodies(), domain.rank(), domain.ranks()).begin;
   for (const Known &one : known) references_[one.body - first] = one.reference;
   PetscFunctionReturn(0);

@@ -1,6 +1,6 @@
 #include "bodies/near_places.hpp"
 
-#include "base/deliver.hpp"
+#include "base/send_to_ranks.hpp"
 #include "grid/cell_ranks.hpp"
 #include "grid/domain.hpp"
 
@@ -64,7 +64,7 @@ PetscErrorCode bring_near(MPI_Comm comm, const Domain &domain, const SpeciesSpec
     ranks.insert(ranks.end(), near.begin(), near.end());
   }
   if (places.everywhere) PetscFunctionReturn(0);
-  PetscCall(deliver(comm, ranks, &here->known));
+  PetscCall(send_to_ranks(comm, ranks, &here->known));
   std::sort(here->known.begin(), here->known.end(),
             [](const NumberedPlace &a, const NumberedPlace &b) { return a.index < b.index; });
   PetscFunctionReturn(0);

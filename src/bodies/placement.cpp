@@ -18,7 +18,7 @@ std::string read_list(const SpeciesSpec &spec, int dimension, std::vector<BodyPl
   static const RowFormat format{
       "rows of x,y,z or x,y,z,angle_x,angle_y,angle_z", {"x", "y", "z", "angle_x", "angle_y", "angle_z"}, {3, 6}, true};
   std::string bytes;
-  if (!read_file_here(spec.positions_file, &bytes)) return "cannot read " + spec.positions_file;
+  if (!read_file_locally(spec.positions_file, &bytes)) return "cannot read " + spec.positions_file;
   Random random(spec.seed, spec.name);
   return read_rows(spec.positions_file, bytes, format, [&](const std::vector<double> &row) {
     BodyPlace place{{row[0], row[1], row[2]}, spec.orientation};
@@ -42,7 +42,8 @@ std::string why_no_lumen(const SpeciesSpec &spec, const DomainShape &grid, const
 }
 
 // Returns why a body cannot be at `place`, or an empty string.
-std::string why_not(const SpeciesSpec &spec, const Surface &surface, const DomainShape &grid, const BodyPlace &place) {
+std::string refusal_reason(const SpeciesSpec &spec, const Surface &surface, const DomainShape &grid,
+                           const BodyPlace &place) {
   const int dimension = grid.cells[2] == 1 ? 2 : 3;
   if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "rotates only about z in 2-D";
   const bool may_cross = spec.shape == Shape::cylinder || is_anchored(spec.shape);
@@ -81,7 +82,7 @@ public:
   std::string add(BodyPlace place) {
     const int index = next_++;
     if (grid_.cells[2] == 1) place.centre[2] = grid_.length[2] / 2;
-    const std::string reason = why_not(spec_, surface_, grid_, place);
+    const std::string reason = refusal_reason(spec_, surface_, grid_, place);
     if (!reason.empty()) return places_.count > 1 ? "body " + std::to_string(index + 1) + ": " + reason : reason;
     if (own_.has(index)) places_.known.push_back({place, index});
     return {};

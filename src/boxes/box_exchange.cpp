@@ -186,7 +186,7 @@ std::size_t BoxExchange::bytes() const {
 
 PetscErrorCode BoxExchange::fetch(const Field &grid) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::exchange);
+  EventScope scope(Event::exchange);
   if (domain_->ranks() == 1) PetscFunctionReturn(0);
   PetscCall(PetscSFBcastBegin(sf_.get(), MPIU_REAL, grid.data(), buffer_.data(), MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(sf_.get(), MPIU_REAL, grid.data(), buffer_.data(), MPI_REPLACE));
@@ -216,7 +216,7 @@ PetscErrorCode BoxExchange::gather() {
 PetscErrorCode BoxExchange::add(const std::vector<Contribution> &contributions,
                                 const std::vector<WeightedTarget> &targets) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::exchange);
+  EventScope scope(Event::exchange);
   const std::ptrdiff_t size = domain_->layout().size;
   for (std::size_t b = 0; b < places_.size(); ++b)
     for (int f = 0; f < components_; ++f)
@@ -269,7 +269,7 @@ void BoxExchange::in_order(const VisitOwn &visit_own, const VisitReceived &visit
 
 PetscErrorCode BoxExchange::collect(const std::vector<const Field *> &fields, const Visit &visit) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::exchange);
+  EventScope scope(Event::exchange);
   for (std::size_t b = 0; b < places_.size(); ++b)
     for (int f = 0; f < components_; ++f)
       for (const Run &run : places_[b].remote)

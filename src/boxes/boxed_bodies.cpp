@@ -1,6 +1,6 @@
 #include "boxes/boxed_bodies.hpp"
 
-#include "base/deliver.hpp"
+#include "base/send_to_ranks.hpp"
 #include "bodies/unwrap.hpp"
 #include "boxes/share_out.hpp"
 #include "solids/grid_bodies.hpp"
@@ -59,7 +59,7 @@ Phase take_body(const Box &box, const Phase &like, int number, const Field &brou
   phase.species = like.species;
   phase.material = like.material;
   phase.fraction = Field(box, 1);
-  phase.tensor.field = tensor_at_rest(box);
+  phase.tensor.field = undeformed_tensor(box);
   phase.tensor.centred = like.tensor.centred;
   for_points(box.rows(), [&](int i, int j, int k) {
     if (label(i, j, k) == number) phase.fraction[0](i, j, k) = phi(i, j, k);
@@ -114,7 +114,7 @@ PetscErrorCode BoxedBodies::take_from_grid(int species) {
     }
     ranks.push_back(domain.owner(domain.image(0, at[0]), domain.image(1, at[1]), domain.image(2, at[2])));
   }
-  PetscCall(deliver(domain.comm(), ranks, &found));
+  PetscCall(send_to_ranks(domain.comm(), ranks, &found));
   std::vector<Box> boxes;
   std::vector<BoxExchange::NumberedBox> numbered;
   for (const Found &body : found) {
@@ -228,11 +228,11 @@ PetscErrorCode BoxedBodies::add_rate(const MomentumRate &rate) {
   std::vector<WeightedTarget> targets{{&rate.field, rate.scale}};
   if (rate.slope.field) targets.push_back(rate.slope);
   PetscCall(bodies_.add_forces(targets));
-  take_off_mean(flow_.domain, bodies_.mean_force(), rate.field);
+  subtract_mean(flow_.domain, bodies_.mean_force(), rate.field);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::add_power(const FlowLook &look, double *power) {
+PetscErrorCode BoxedBodies::add_power(const SynchronisedBodies &look, double *power) {
   double own = 0;
   PetscFunctionBeginUser;
   PetscCall(bodies_.stretch_power(look.boxed, flow_.now.phases, &own));
@@ -240,7 +240,7 @@ PetscErrorCode BoxedBodies::add_power(const FlowLook &look, double *power) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+PetscErrorCode BoxedBodies::add_surface_energy(const SynchronisedBodies &look, SurfaceEnergy *measured,
                                                std::vector<SurfaceSample> *) {
   PetscFunctionBeginUser;
   const std::vector<Phase> &phases = flow_.now.phases;
@@ -264,7 +264,7 @@ PetscErrorCode BoxedBodies::give_surface_measures(const std::vector<BodyInBox> &
     found.push_back({seen[b].number, measure_surface_in_box(seen[b], samples_[b])});
     ranks.push_back(BodyRange::owner(seen[b].number - 1, flow_.bodies.bodies(), flow_.domain.ranks()));
   }
-  PetscCall(deliver(flow_.domain.comm(), ranks, &found));
+  PetscCall(send_to_ranks(flow_.domain.comm(), ranks, &found));
   for (const Found &one : found) (*owned)[one.number - 1 - first] = one.measure;
   PetscFunctionReturn(0);
 }
@@ -357,7 +357,7 @@ PetscErrorCode BoxedBodies::show(const std::vector<BodyInBox> &seen) {
     PetscCall(flow_.find_rows(&phase));
     PetscCall(flow_.exchange.update_ghosts(phase.label, 1, &phase.rows));
     PetscCall(find_solid(flow_.domain, phase));
-    PetscCall(flow_.place_of_phases().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
+    PetscCall(flow_.phase_domain().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }

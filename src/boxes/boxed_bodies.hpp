@@ -50,8 +50,8 @@ public:
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  PetscErrorCode add_power(const FlowLook &look, double *power) override;
-  PetscErrorCode add_surface_energy(const FlowLook &look, SurfaceEnergy *measured,
+  PetscErrorCode add_power(const SynchronisedBodies &look, double *power) override;
+  PetscErrorCode add_surface_energy(const SynchronisedBodies &look, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
   PetscErrorCode place_markers() { return bodies_.place_markers(); }
   void mark_forced_rows(std::vector<char> *rows) const override { bodies_.mark_rows(rows); }

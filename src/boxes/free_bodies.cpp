@@ -1,9 +1,9 @@
 #include "boxes/free_bodies.hpp"
 
-#include "base/deliver.hpp"
+#include "base/send_to_ranks.hpp"
 #include "boxes/receptors.hpp"
-#include "field/fed_velocity.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
+#include "field/inlet_velocity.hpp"
 #include "membranes/stretch_force.hpp"
 #include "solids/elastic_force.hpp"
 #include "solids/transport.hpp"
@@ -52,14 +52,14 @@ Phase FreeBodies::empty_like(const Phase &phase, const Box &box) {
   const int dimension = box.dimension();
   fresh.tensor.field = phase.material.carries_tensor()
                            ? Field(box, static_cast<int>(tensor_components(dimension).size()))
-                           : tensor_at_rest(box);
+                           : undeformed_tensor(box);
   for (int f = 0; f < dimension && phase.material.carries_tensor(); ++f) fresh.tensor.field.fill(f, 1);
   fresh.tensor.centred = phase.tensor.centred;
   fresh.tensor.rule = phase.tensor.rule;
   return fresh;
 }
 
-FreeBodies::FreeBodies(const Domain &domain, const Fluid &fluid, const BoxSides &sides, bool extends)
+FreeBodies::FreeBodies(const Domain &domain, const Fluid &fluid, const BoundaryConditions &sides, bool extends)
     : domain_(&domain),
       fluid_(fluid),
       sides_(&sides),
@@ -113,7 +113,7 @@ std::vector<double> FreeBodies::packed(std::size_t b) const {
   std::vector<double> values{double(body.number), double(body.species)};
   for (const Int3 &place : {layout.begin, layout.cells}) values.insert(values.end(), place.begin(), place.end());
   values.push_back(double(body.markers.size()));
-  for_values(block, first_in(body.box, block), body.phase, [&](const double &value) { values.push_back(value); });
+  for_values(block, block_offset(body.box, block), body.phase, [&](const double &value) { values.push_back(value); });
   const auto add = [&values](const auto &points) {
     for (const auto &point : points) {
       const auto numbers = point.packed();
@@ -214,7 +214,7 @@ PetscErrorCode FreeBodies::give(const std::vector<int> &ranks, const std::vector
   bodies_ = std::move(kept);
   seen_.clear();
   fitted_ = fitted_ && parts.empty();
-  PetscCall(deliver(domain_->comm(), to, &parts));
+  PetscCall(send_to_ranks(domain_->comm(), to, &parts));
   std::sort(parts.begin(), parts.end(), [](const Part &one, const Part &other) {
     return std::pair(one.number, one.begin) < std::pair(other.number, other.begin);
   });
@@ -243,7 +243,7 @@ void FreeBodies::clear() {
 
 // B outside the body, of a body whose phi and B inside are set.
 PetscErrorCode FreeBodies::extend(Body *body) {
-  const PhasePlace place{&body->box, sides_, nullptr};
+  const PhaseDomain place{&body->box, sides_, nullptr};
   Phase &phase = body->phase;
   PetscFunctionBeginUser;
   if (phase.material.is_membrane()) {
@@ -339,8 +339,8 @@ void FreeBodies::bring_velocity(std::size_t body, const Step &step, const Field 
   const Box &box = bodies_[body].box;
   const bool membrane = bodies_[body].phase.material.is_membrane();
   exchange_.copy_to_box(body, velocity, *flow);
-  const BoxSides *sides = sides_;
-  BoxSides own;  // where a side is fed: what is known of its velocity here are the faces of the box
+  const BoundaryConditions *sides = sides_;
+  BoundaryConditions own;  // where a side is fed: what is known of its velocity here are the faces of the box
   for (const auto [d, high] : box.sides()) {
     const int away = high ? domain_->domain_cells()[d] - box.layout().begin[d] - box.cells()[d] : box.layout().begin[d];
     if (!(*sides_)[d][high].fed || away > box.layout().ghosts[d]) continue;
@@ -348,7 +348,7 @@ void FreeBodies::bring_velocity(std::size_t body, const Step &step, const Field 
     sides = &own;
     // Of a side among the ghosts, which nothing of the body reads, any values will do.
     const int local = high && away == 0 ? box.cells()[d] : 0;
-    own[d][high].fed = std::make_shared<FedVelocity>(FedVelocity::of_faces(box, std::as_const(*flow)[d], d, local));
+    own[d][high].fed = std::make_shared<InletVelocity>(InletVelocity::of_faces(box, std::as_const(*flow)[d], d, local));
   }
   fill_wall_ghosts_velocity(box, *sides, step.time, *flow,
                             membrane ? MembraneMechanics::velocity_ghosts : Box::stencil_width);
@@ -440,7 +440,7 @@ PetscErrorCode FreeBodies::find_forces() {
   PetscFunctionBeginUser;
   net_force_ = NetForce(*domain_, drifts_);
   PetscCall(for_bodies([this](std::size_t b) { return find_force(&bodies_[b]); }));
-  PetscCall(net_force_.find_mean(&mean_force_));
+  PetscCall(net_force_.compute_mean(&mean_force_));
   PetscFunctionReturn(0);
 }
 
@@ -460,13 +460,13 @@ PetscErrorCode FreeBodies::move(const Box &box, const Step &step, const Field &f
   PetscFunctionBeginUser;
   PetscCall(tools().interface.advance(box, step.dt, flow, static_cast<long>(step.number), phase->rows, phase->fraction,
                                       stage));
-  phase->rows.follow_in_box(box, std::as_const(*phase).fraction[0],
+  phase->rows.update_in_box(box, std::as_const(*phase).fraction[0],
                             rows_reach(phase->material, domain_->spec().ghosts));
   fill_wall_ghosts_even(box, at_centre, phase->fraction[0], domain_->spec().ghosts, &phase->rows);
   const ActiveSegments before = std::move(phase->tensor.strained);
   PetscCall(find_solid(box, *phase));
   if (!phase->material.elastic()) PetscFunctionReturn(0);
-  const PhasePlace place{&box, sides_, nullptr};
+  const PhaseDomain place{&box, sides_, nullptr};
   PetscCall(tools().solids.find_layers(box, *phase));
   PetscCall(tools().solids.advance(place, {step.dt, step.number, fluid_, flow, before}, &phase->rows, *phase, stage));
   PetscCall(place.update_ghosts(phase->tensor.field, Box::stencil_width, &phase->rows));
@@ -487,7 +487,7 @@ PetscErrorCode FreeBodies::move_membrane(const Step &step, const Field &flow, Bo
   PetscCall(membrane.find(phase, work));
   if (marked) markers.find_strain(membrane.surface(), body->species, &strains);
   PetscCall(membrane.move(step.dt, flow, strains, &phase, unresolved));
-  if (marked) markers.settle(membrane.surface(), membrane.surface_fields(), body->species, &body->markers);
+  if (marked) markers.pull_to_surface(membrane.surface(), membrane.surface_fields(), body->species, &body->markers);
   PetscCall(gather_force(membrane, body, force));
   PetscFunctionReturn(0);
 }
@@ -524,7 +524,7 @@ PetscErrorCode FreeBodies::advance(const Step &step, const Field &velocity, long
   PetscCall(for_bodies([this](std::size_t b) {
     return bodies_[b].phase.material.is_membrane() ? PetscErrorCode(0) : find_force(&bodies_[b]);
   }));
-  PetscCall(net_force_.find_mean(&mean_force_));
+  PetscCall(net_force_.compute_mean(&mean_force_));
   PetscFunctionReturn(0);
 }
 

@@ -38,7 +38,7 @@ public:
   };
 
   /// `sides` must outlive this. `extends`: B is extended outside bodies; else it is I there.
-  FreeBodies(const Domain &domain, const Fluid &fluid, const BoxSides &sides, bool extends = true);
+  FreeBodies(const Domain &domain, const Fluid &fluid, const BoundaryConditions &sides, bool extends = true);
 
   /// Adds a body to this rank: `phase` has material, rule and the owned cells of phi and B on `box`, which may be any
   /// block that holds the body.
@@ -167,7 +167,7 @@ private:
 
   const Domain *domain_;
   Fluid fluid_;
-  const BoxSides *sides_;
+  const BoundaryConditions *sides_;
   BoxExchange exchange_, fractions_;  ///< of velocities and forces, of single fields
   bool fractions_are_connected_ = false;
   bool extends_;
@@ -202,9 +202,9 @@ PetscErrorCode FreeBodies::for_bodies(const Work &work) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) PetscCall(work(b));
     PetscFunctionReturn(0);
   }
-  VerbScope scope(Verb::boxes);
+  EventScope scope(Event::boxes);
   std::vector<PetscErrorCode> errors(bodies_.size(), 0);
-  scope.flops(in_team(static_cast<int>(bodies_.size()), [&](int b) { errors[b] = work(b); }));
+  scope.flops(in_parallel_tasks(static_cast<int>(bodies_.size()), [&](int b) { errors[b] = work(b); }));
   for (const PetscErrorCode error : errors) PetscCall(error);
   PetscFunctionReturn(0);
 }

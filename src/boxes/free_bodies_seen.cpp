@@ -1,7 +1,7 @@
 // FreeBodies: what others see of the bodies.
 #include "boxes/free_bodies.hpp"
 
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "membranes/stretch_force.hpp"
 
 #include <algorithm>
@@ -174,7 +174,7 @@ enum { species_shown, fraction_shown, tensor_shown };
 // Of a block of cells of a body.
 void fill_shown(const BodyInBox &body, const Box &block, int tensors, Field *field) {
   field->fill(species_shown, body.species);
-  const Int3 first = first_in(*body.box, block);
+  const Int3 first = block_offset(*body.box, block);
   const auto of_block = [&first](ConstView view) {
     view.origin += first[0] + first[1] * view.sy + first[2] * view.sz;
     return view;
@@ -214,7 +214,7 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
   }
   for (const Field &field : fields) shown.push_back(&field);
   std::map<int, Field> most;  // phi of the body that B at the point is of
-  for (const auto &[s, phase] : phases) most[s] = Field::at_rest(*domain_, 1 + tensors);
+  for (const auto &[s, phase] : phases) most[s] = Field::on_demand(*domain_, 1 + tensors);
   BoxExchange exchange(*domain_, all);
   PetscCall(exchange.connect(boxes));
   const std::ptrdiff_t size = domain_->layout().size;

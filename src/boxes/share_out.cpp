@@ -1,6 +1,6 @@
 #include "boxes/share_out.hpp"
 
-#include "base/deliver.hpp"
+#include "base/send_to_ranks.hpp"
 
 #include <algorithm>
 #include <map>
@@ -58,7 +58,7 @@ PetscErrorCode share_out(MPI_Comm comm, double load, const std::vector<BodyShare
     asked.push_back({body.number, rank, 0, body.cost});
     to.push_back(body.home);
   }
-  PetscCall(deliver(comm, to, &asked));
+  PetscCall(send_to_ranks(comm, to, &asked));
   std::sort(asked.begin(), asked.end(), [](const Asked &one, const Asked &other) { return one.number < other.number; });
   double own[2] = {load, 0};
   for (const Asked &body : asked) own[1] += body.cost;
@@ -78,7 +78,7 @@ PetscErrorCode share_out(MPI_Comm comm, double load, const std::vector<BodyShare
     asked[n].target = takers[n];
     to.push_back(asked[n].owner);
   }
-  PetscCall(deliver(comm, to, &asked));
+  PetscCall(send_to_ranks(comm, to, &asked));
   std::map<int, int> targets;
   for (const Asked &body : asked) targets[body.number] = body.target;
   ranks->clear();

@@ -55,7 +55,7 @@ inline double centre_stress(int dimension, const Phase &phase, int a, int i, int
 }
 
 /// Viscous plus elastic stress without the pressure. Bodies in boxes of their own are not included.
-struct WholeStress {
+struct TotalStress {
   EdgeViscosity viscosity;
   const Field &velocity;
   const std::vector<Phase> &phases;

@@ -19,8 +19,8 @@ void EnergyBudget::advance(double time, const EnergyState &state) {
     const double half = 0.5 * (time - time_);
     for (int w = 0; w < works; ++w) work_[w] += half * (rate_[w] + rate[w]);
     // The integral of a monotonic rate differs from its trapezoid by at most half the difference of the two values.
-    made_.uncertain += half * (std::fabs(rate[0] - rate_[0]) + std::fabs(rate[1] - rate_[1]));
-    made_.handled += half * (exchanged_ + exchanged);
+    made_.uncertainty += half * (std::fabs(rate[0] - rate_[0]) + std::fabs(rate[1] - rate_[1]));
+    made_.throughput += half * (exchanged_ + exchanged);
   }
   rate_ = rate;
   exchanged_ = exchanged;
@@ -37,17 +37,17 @@ void EnergyBudget::update_made(double unknown) {
   made_.held = last_[0] + (last_[1] - least_) + unknown;
 }
 
-// A share x has been generated since row s if M = made - uncertain - x handled has grown since by more than x times the
-// energy held at s. The criterion is strictest for the row with the least M + x held.
+// A share x has been generated since row s if M = made - uncertainty - x throughput has grown since by more than x
+// times the energy held at s. The criterion is strictest for the row with the least M + x held.
 void EnergyBudget::compare_made() {
   made_share_ = 0;
   for (std::size_t n = 0; n < shares.size(); ++n) {
     const double x = shares[n];
-    const auto beyond = [x](const Made &m) { return (m.made - m.uncertain) - x * m.handled + x * m.held; };
+    const auto beyond = [x](const Made &m) { return (m.made - m.uncertainty) - x * m.throughput + x * m.held; };
     Made &since = since_[n];
     if (!may_return_ && beyond(made_) < beyond(since)) since = made_;
-    const double made = (made_.made - since.made) - (made_.uncertain - since.uncertain);
-    const double of = since.held + (made_.handled - since.handled);
+    const double made = (made_.made - since.made) - (made_.uncertainty - since.uncertainty);
+    const double of = since.held + (made_.throughput - since.throughput);
     if (made > 0 && of > 0) made_share_ = std::max(made_share_, made / of);
   }
   made_share_max_ = std::max(made_share_max_, made_share_);
@@ -77,24 +77,24 @@ void EnergyBudget::set_numbers(const std::vector<double> &numbers) {
   started_ = time_ >= 0;
 }
 
-std::vector<double> EnergyBudget::made_numbers() const {
+std::vector<double> EnergyBudget::generated_numbers() const {
   // made_.held is left out, because the next row computes it again.
-  std::vector<double> all{made_share_, made_share_max_, started_ ? 1.0 : 0.0, exchanged_,
-                          made_.made,  made_.uncertain, made_.handled,        least_};
-  for (const Made &m : since_) all.insert(all.end(), {m.made, m.uncertain, m.handled, m.held});
+  std::vector<double> all{made_share_, made_share_max_,   started_ ? 1.0 : 0.0, exchanged_,
+                          made_.made,  made_.uncertainty, made_.throughput,     least_};
+  for (const Made &m : since_) all.insert(all.end(), {m.made, m.uncertainty, m.throughput, m.held});
   return all;
 }
 
-void EnergyBudget::set_made_numbers(const std::vector<double> &numbers) {
+void EnergyBudget::set_generated_numbers(const std::vector<double> &numbers) {
   auto next = numbers.begin();
   made_share_ = *next++;
   made_share_max_ = *next++;
   started_ = *next++ != 0;
   exchanged_ = *next++;
-  for (double *value : {&made_.made, &made_.uncertain, &made_.handled, &least_}) *value = *next++;
+  for (double *value : {&made_.made, &made_.uncertainty, &made_.throughput, &least_}) *value = *next++;
   least_ = std::min(least_, 0.0);  // by definition, even if the file has another value
   for (Made &m : since_)
-    for (double *value : {&m.made, &m.uncertain, &m.handled, &m.held}) *value = *next++;
+    for (double *value : {&m.made, &m.uncertainty, &m.throughput, &m.held}) *value = *next++;
 }
 
 }  // namespace eulastic

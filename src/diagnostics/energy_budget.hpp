@@ -28,7 +28,7 @@ public:
 
   /// Artificial compressibility stores energy that may return. If `allowed`, energy counts as generated only after all
   /// energy lost since the start has returned.
-  void allow_return(bool allowed) { may_return_ = allowed; }
+  void allow_energy_return(bool allowed) { may_return_ = allowed; }
 
   double supplied() const { return work_[0]; }    ///< by body force, walls and boundaries
   double dissipated() const { return work_[1]; }  ///< by viscosity
@@ -41,30 +41,30 @@ public:
   double lost_extended() const;
 
   /// Throughput of energy: the energy at the start plus the integral of the absolute powers since.
-  double handled() const { return first_[0] + first_[1] + made_.handled; }
+  double throughput() const { return first_[0] + first_[1] + made_.throughput; }
   /// Bound of the error of lost() from the trapezoidal sums, if rates are monotonic between rows.
-  double uncertain() const { return made_.uncertain; }
+  double uncertainty() const { return made_.uncertainty; }
   /// The generated energy as a share of the energy held at an earlier row plus the throughput since, less the
   /// uncertainty, for the row with the largest share; 0 if none was generated. Rows of the start are not used, because
   /// a boundary that starts abruptly supplies energy instantaneously; (36).
-  double made_share() const { return made_share_; }
-  /// The largest made_share() of all rows.
-  double made_share_max() const { return made_share_max_; }
+  double generated_share() const { return made_share_; }
+  /// The largest generated_share() of all rows.
+  double generated_share_max() const { return made_share_max_; }
 
-  /// Works and energies for a checkpoint, and the numbers of made_share(). set_numbers() alone starts made_share()
-  /// anew.
+  /// Works and energies for a checkpoint, and the numbers of generated_share(). set_numbers() alone starts
+  /// generated_share() anew.
   std::vector<double> numbers() const;
   void set_numbers(const std::vector<double> &numbers);
-  std::vector<double> made_numbers() const;
-  void set_made_numbers(const std::vector<double> &numbers);
+  std::vector<double> generated_numbers() const;
+  void set_generated_numbers(const std::vector<double> &numbers);
 
 private:
   /// Sums since the start at one row.
   struct Made {
-    double made = 0;       ///< -lost()
-    double uncertain = 0;  ///< error bound of `made`
-    double handled = 0;    ///< throughput, without the energy at the start
-    double held = 0;       ///< kinetic energy, stored energy above least_, and EnergyState::unknown
+    double made = 0;         ///< -lost()
+    double uncertainty = 0;  ///< error bound of `made`
+    double throughput = 0;   ///< throughput, without the energy at the start
+    double held = 0;         ///< kinetic energy, stored energy above least_, and EnergyState::unknown
   };
   void update_made(double unknown);
   void compare_made();
@@ -81,7 +81,7 @@ private:
   std::array<Made, shares.size()> since_;  ///< reference rows of (36), one for each share
   double made_share_ = 0, made_share_max_ = 0;
   bool started_ = false;     ///< whether a row after the start exists
-  bool may_return_ = false;  ///< allow_return()
+  bool may_return_ = false;  ///< allow_energy_return()
 };
 
 }  // namespace eulastic

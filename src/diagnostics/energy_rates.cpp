@@ -178,7 +178,7 @@ void add_elastic(const Box &box, const std::vector<Segment> &rows, const Field &
 }
 
 // Adds the power of moving walls on the contents of a box.
-void add_wall_power(const Box &box, const WallPower &walls, const EnergyNumbers &numbers, ExactSums *sums) {
+void add_wall_power(const Box &box, const WallPower &walls, const EnergyParameters &numbers, ExactSums *sums) {
   if (!numbers.sides) return;
   for (const auto [d, high] : box.sides())
     if (box.touches(d, high)) walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), sums);
@@ -191,10 +191,10 @@ void strain_energy(const Box &box, const Phase &phase, const Segment &row, doubl
 }
 
 PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
-                                    const EnergyNumbers &numbers, EnergyRates *rates,
+                                    const EnergyParameters &numbers, EnergyRates *rates,
                                     const std::vector<BodyInBox> &bodies) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::sums);
+  EventScope scope(Event::sums);
   std::vector<const Phase *> elastic;
   for (const Phase &phase : phases)
     if (phase.material.elastic() && !phase.boxed) elastic.push_back(&phase);

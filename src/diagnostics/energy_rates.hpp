@@ -6,18 +6,18 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "flow/local_viscosity.hpp"
 #include "grid/domain.hpp"
 
 namespace eulastic {
 
 /// Parameters of the rates.
-struct EnergyNumbers {
-  double density = 1, viscosity = 1;  ///< rho and mu (dynamic)
-  Real3 force{};                      ///< body force per mass at `time`
-  const BoxSides *sides = nullptr;    ///< null: no wall moves
+struct EnergyParameters {
+  double density = 1, viscosity = 1;          ///< rho and mu (dynamic)
+  Real3 force{};                              ///< body force per mass at `time`
+  const BoundaryConditions *sides = nullptr;  ///< null: no wall moves
   double time = 0;
   const Field *local_viscosity = nullptr;  ///< kinematic viscosity (flow/local_viscosity.hpp) if bodies have their own
 };
@@ -38,7 +38,7 @@ void strain_energy(const Box &box, const Phase &phase, const Segment &row, doubl
 /// Measures the rates except for side_power. Reads `velocity` (of `time`), phi and B with one ghost layer. `bodies`:
 /// bodies of this rank in boxes, with the velocity. One Allreduce.
 PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity, const std::vector<Phase> &phases,
-                                    const EnergyNumbers &numbers, EnergyRates *rates,
+                                    const EnergyParameters &numbers, EnergyRates *rates,
                                     const std::vector<BodyInBox> &bodies = {});
 
 }  // namespace eulastic

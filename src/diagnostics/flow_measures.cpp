@@ -181,7 +181,7 @@ public:
 
   void add(int d, bool high) const {
     const ConstView v = velocity_[d];
-    for_points(box_.faces_on(d, high), [&](int i, int j, int k) {
+    for_points(box_.boundary_faces(d, high), [&](int i, int j, int k) {
       const double *q = &v(i, j, k), half = high ? 0.5 : -0.5;
       sums_->add(speed_squared, half * q[0] * q[0]);
       sums_->add(momentum_x + d, half * q[0]);
@@ -211,7 +211,7 @@ double largest(const double *values, int n, double so_far) {
 }
 
 // Computes the measures from sums and maxima over all ranks, in the order of the enumerations above.
-FlowMeasures evaluate(const Box &box, const FlowNumbers &numbers, const double *sum,
+FlowMeasures evaluate(const Box &box, const FlowParameters &numbers, const double *sum,
                       const std::vector<double> &maximum) {
   FlowMeasures m;
   const double volume = box.cell_volume(), cells = box.domain_cell_count();
@@ -233,10 +233,10 @@ FlowMeasures evaluate(const Box &box, const FlowNumbers &numbers, const double *
 
 }  // namespace
 
-PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const FlowNumbers &numbers,
+PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const FlowParameters &numbers,
                             FlowMeasures *measures) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::sums);
+  EventScope scope(Event::sums);
   const int dimension = domain.dimension(), n = domain.cells()[0], first = domain.layout().begin[0];
   std::vector<std::vector<double>> found(row_parts(domain), std::vector<double>(maxima, 0.0));
   const auto add = [&, dimension, n, first](const RowPart &part, ExactSums &sums) {
@@ -264,7 +264,7 @@ PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const F
     add(part, sums);
     if (!part.first || !numbers.sides) return;
     for (const auto [d, high] : domain.sides())
-      if (volume_crosses((*numbers.sides)[d][high].kind))
+      if (fluid_crosses((*numbers.sides)[d][high].kind))
         SideFaces(domain, velocity, numbers.local_viscosity ? numbers.viscosity / numbers.density : 1, &sums)
             .add(d, high);
   };
@@ -282,7 +282,7 @@ PetscErrorCode measure_phases(const Domain &domain, const std::vector<Phase> &ph
                               const std::vector<BodyInBox> &bodies) {
   enum { volume, energy, sums_of_phase };
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::sums);
+  EventScope scope(Event::sums);
   const auto add_row = [](const Box &box, const Phase &phase, int p, const Segment &row, std::vector<double> &density,
                           ExactSums &sums) {
     const ConstView phi = phase.fraction[0];

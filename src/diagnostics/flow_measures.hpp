@@ -5,19 +5,19 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "grid/domain.hpp"
 
 namespace eulastic {
 
 /// Parameters of the measures.
-struct FlowNumbers {
+struct FlowParameters {
   double density = 1, viscosity = 1;       ///< rho and mu (dynamic)
   double dt = 0;                           ///< time step
   double force = 0;                        ///< |f|, per mass
   const Field *local_viscosity = nullptr;  ///< kinematic viscosity (flow/local_viscosity.hpp) if bodies have their own
-  const BoxSides *sides = nullptr;         ///< null: volume crosses no boundary
+  const BoundaryConditions *sides = nullptr;  ///< null: volume crosses no boundary
 };
 
 struct FlowMeasures {
@@ -34,7 +34,7 @@ struct FlowMeasures {
 
 /// Measures the flow. `velocity`: u, v (, w) with one valid ghost layer. Non-finite values make the sums that contain
 /// them NaN. Collective.
-PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const FlowNumbers &numbers,
+PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const FlowParameters &numbers,
                             FlowMeasures *measures);
 /// Measures elastic_energy and phase_volume. `bodies`: bodies of this rank in boxes, which count with the phases of
 /// their species. Collective.

@@ -2,7 +2,7 @@
 
 #include "base/events.hpp"
 #include "base/exact_sum.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +55,7 @@ private:
 PetscErrorCode sample_points(const Domain &domain, const SampledFields &fields, const std::vector<Real3> &points,
                              std::vector<Sample> *samples) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::sums);
+  EventScope scope(Event::sums);
   samples->assign(points.size(), {});
   for (std::size_t n = 0; n < points.size(); ++n) {
     const ProbeCell place(domain, points[n]);
@@ -76,7 +76,7 @@ PetscErrorCode sample_points(const Domain &domain, const SampledFields &fields, 
 PetscErrorCode sample_planes(const Domain &domain, const SampledFields &fields, int direction,
                              std::vector<Sample> *samples) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::sums);
+  EventScope scope(Event::sums);
   const int planes = domain.domain_cells()[direction], n = domain.cells()[0], dimension = domain.dimension();
   const Int3 &begin = domain.layout().begin;
   ExactSums sums(values * planes);

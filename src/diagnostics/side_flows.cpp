@@ -15,9 +15,9 @@ public:
       : box_(box), density_(density), velocity_(velocity), pressure_(pressure) {}
 
   /// `profile`: that of an inflow boundary, 0 where solids cover it; or null.
-  void add(const SideFlow &side, const SideProfile *profile, int first, ExactSums *all) const {
+  void add(const SideFlow &side, const InflowProfile *profile, int first, ExactSums *all) const {
     const int d = side.direction;
-    for_points(box_.cells_at(d, side.high, 1), [&](int i, int j, int k) {
+    for_points(box_.boundary_cells(d, side.high, 1), [&](int i, int j, int k) {
       const double along = (&velocity_[d](i, j, k))[side.high ? velocity_[d].stride(d) : 0];
       const double inward = side.high ? -along : along, p = pressure_on(side, {i, j, k});
       const double speed_squared = along * along + (is_open(side.kind) ? tangential_squared(d, {i, j, k}) : 0);
@@ -27,7 +27,7 @@ public:
         all->add(first + faces_sum, 1);
       }
       // Fluid that enters through an outflow boundary has no more energy than fluid at rest outside.
-      const double backflow = side.kind == SideKind::outflow && inward > 0 ? 0.5 * density_ * along * along : 0;
+      const double backflow = side.kind == BoundaryKind::outflow && inward > 0 ? 0.5 * density_ * along * along : 0;
       all->add(first + power_sum, inward * ((p - backflow) + 0.5 * density_ * speed_squared));
     });
   }
@@ -64,11 +64,11 @@ private:
 
 }  // namespace
 
-std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Box &box) {
+std::vector<SideFlow> crossed_boundaries(const BoundaryConditions &sides, const Box &box) {
   std::vector<SideFlow> flows;
   for (const auto [d, high] : box.sides()) {
-    const SideKind kind = sides[d][high].kind;
-    if (!volume_crosses(kind)) continue;
+    const BoundaryKind kind = sides[d][high].kind;
+    if (!fluid_crosses(kind)) continue;
     SideFlow flow;
     flow.direction = d;
     flow.high = high;
@@ -78,18 +78,18 @@ std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Box &box) {
   return flows;
 }
 
-PetscErrorCode measure_side_flows(const Domain &domain, const BoxSides &sides, double time, double density,
+PetscErrorCode measure_side_flows(const Domain &domain, const BoundaryConditions &sides, double time, double density,
                                   const Field &velocity, const Field &pressure, std::vector<SideFlow> *flows) {
   PetscFunctionBeginUser;
-  *flows = crossed_sides(sides, domain);
+  *flows = crossed_boundaries(sides, domain);
   if (flows->empty()) PetscFunctionReturn(0);
-  VerbScope scope(Verb::sums);
+  EventScope scope(Event::sums);
   ExactSums all(sums * static_cast<int>(flows->size()));
   std::vector<double> result(sums * flows->size());
   const SideSums add(domain, density, velocity, pressure);
   int first = 0;
   for (SideFlow &flow : *flows) {
-    if (flow.kind == SideKind::pressure) flow.pressure = sides[flow.direction][flow.high].given.at(time);
+    if (flow.kind == BoundaryKind::pressure) flow.pressure = sides[flow.direction][flow.high].given.at(time);
     add.add(flow, sides[flow.direction][flow.high].profile.get(), first, &all);
     first += sums;
   }

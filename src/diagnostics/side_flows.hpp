@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/domain.hpp"
 
 #include <string>
@@ -13,7 +13,7 @@ namespace eulastic {
 struct SideFlow {
   int direction = 0;
   bool high = false;
-  SideKind kind = SideKind::inflow;
+  BoundaryKind kind = BoundaryKind::inflow;
   double flow_rate = 0;  ///< volume into the box per time; in 2-D per depth
   double pressure = 0;   ///< given, or the mean over the open part of the boundary, extrapolated from two cells
   double power = 0;      ///< of pressure and kinetic energy into the box; viscous work on the boundary is neglected
@@ -21,9 +21,10 @@ struct SideFlow {
 };
 
 /// All boundaries that volume crosses, in the order xmin, xmax, ymin, ...
-std::vector<SideFlow> crossed_sides(const BoxSides &sides, const Box &box);
-/// Measures the boundaries of crossed_sides(). Reads one ghost layer of the velocity. One Allreduce if there are any.
-PetscErrorCode measure_side_flows(const Domain &domain, const BoxSides &sides, double time, double density,
+std::vector<SideFlow> crossed_boundaries(const BoundaryConditions &sides, const Box &box);
+/// Measures the boundaries of crossed_boundaries(). Reads one ghost layer of the velocity. One Allreduce if there are
+/// any.
+PetscErrorCode measure_side_flows(const Domain &domain, const BoundaryConditions &sides, double time, double density,
                                   const Field &velocity, const Field &pressure, std::vector<SideFlow> *flows);
 
 }  // namespace eulastic

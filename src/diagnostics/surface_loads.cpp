@@ -149,9 +149,9 @@ PetscErrorCode measure_surface_loads(MPI_Comm comm, const EdgeViscosity &viscosi
                                      const std::vector<BodyAtSurfaces> &bodies, std::vector<SurfaceLoad> *loads) {
   PetscFunctionBeginUser;
   if (loads->empty()) PetscFunctionReturn(0);
-  const VerbScope scope(Verb::sums);
+  const EventScope scope(Event::sums);
   SurfaceLoads surfaces(*loads);
-  const WholeStress stress{viscosity, velocity, phases};
+  const TotalStress stress{viscosity, velocity, phases};
   for (std::size_t p = 0; p < phases.size(); ++p)
     if (labels[p])
       surfaces.add(

@@ -1,7 +1,7 @@
 #include "diagnostics/surface_shear_stress.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "kernels/interface_normal.hpp"
 #include "kernels/plane.hpp"
 
@@ -165,7 +165,7 @@ private:
 // Components of the stress, computed where they are needed and stored.
 class CachedStress {
 public:
-  explicit CachedStress(const WholeStress &whole)
+  explicit CachedStress(const TotalStress &whole)
       : whole_(whole), known_(whole.viscosity.box, whole.viscosity.box.dimension() == 3 ? 6 : 3) {
     for (int c = 0; c < known_.count(); ++c) known_.fill(c, std::nan(""));
   }
@@ -177,7 +177,7 @@ public:
   }
 
 private:
-  const WholeStress &whole_;
+  const TotalStress &whole_;
   Field known_;
 };
 
@@ -252,7 +252,7 @@ Real3 elastic_traction(const CutCells &cells, CachedStress &known, const Int3 &c
 }  // namespace
 
 void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const Field &velocity, Field &stress) {
-  const VerbScope scope(Verb::sums);
+  const EventScope scope(Event::sums);
   const CutCells cells(box, solid);
   const auto traction = box.dimension() == 2 ? rigid_traction<2> : rigid_traction<3>;
   cells.add_to(stress, [&](const Int3 &cell, const SurfacePlane &plane) {
@@ -260,8 +260,8 @@ void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid,
   });
 }
 
-void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field &stress) {
-  const VerbScope scope(Verb::sums);
+void add_elastic_surface_stress(const TotalStress &whole, ConstView solid, Field &stress) {
+  const EventScope scope(Event::sums);
   const CutCells cells(whole.viscosity.box, solid);
   const auto traction = whole.viscosity.box.dimension() == 2 ? elastic_traction<2> : elastic_traction<3>;
   CachedStress known(whole);

@@ -11,6 +11,6 @@ namespace eulastic {
 /// `viscosity`: dynamic, of the fluid.
 void add_rigid_surface_stress(const Box &box, double viscosity, ConstView solid, const Field &velocity, Field &stress);
 /// Does the same for elastic bodies; reads two ghosts of B and of the viscosity as well.
-void add_elastic_surface_stress(const WholeStress &whole, ConstView solid, Field &stress);
+void add_elastic_surface_stress(const TotalStress &whole, ConstView solid, Field &stress);
 
 }  // namespace eulastic

@@ -56,13 +56,13 @@ private:
 
 }  // namespace
 
-std::vector<WallStress> wall_shear_stress(const Box &box, const BoxSides &sides, double time,
+std::vector<WallStress> wall_shear_stress(const Box &box, const BoundaryConditions &sides, double time,
                                           const EdgeViscosity &viscosity, const Field &velocity,
                                           const std::vector<Phase> &phases) {
-  const VerbScope scope(Verb::sums);
+  const EventScope scope(Event::sums);
   std::vector<WallStress> all;
   for (const auto [d, high] : box.sides()) {
-    if (sides[d][high].kind != SideKind::wall) continue;
+    if (sides[d][high].kind != BoundaryKind::wall) continue;
     WallStress &stress = all.emplace_back();
     stress.direction = d;
     stress.high = high;

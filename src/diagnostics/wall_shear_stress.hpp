@@ -4,8 +4,8 @@
 // momentum equation, averaged to the centres of the wall's cells.
 #pragma once
 
+#include "field/boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "flow/local_viscosity.hpp"
 #include "grid/box.hpp"
 
@@ -22,7 +22,7 @@ struct WallStress {
 };
 
 /// Traction on all walls of the box. Reads one ghost layer of velocity (at `time`) and B.
-std::vector<WallStress> wall_shear_stress(const Box &box, const BoxSides &sides, double time,
+std::vector<WallStress> wall_shear_stress(const Box &box, const BoundaryConditions &sides, double time,
                                           const EdgeViscosity &viscosity, const Field &velocity,
                                           const std::vector<Phase> &phases);
 

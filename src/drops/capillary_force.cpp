@@ -1,7 +1,7 @@
 #include "drops/capillary_force.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/blocks.hpp"
 #include "kernels/height_curvature.hpp"
 #include "kernels/plane.hpp"
@@ -166,7 +166,7 @@ void for_owned(const Box &box, const ActiveSegments &band, int j, int k, const W
 // The curvature is found in the cells of the band, including one ghost layer.
 PetscErrorCode CapillaryForce::find(const Phase &phase, Field &work) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::surface_tension);
+  EventScope scope(Event::surface_tension);
   const Box &box = *box_;
   const bool flat = box.dimension() == 2;
   const int parts = row_parts(box);
@@ -214,7 +214,7 @@ void CapillaryForce::clear_work() {
 }
 
 void CapillaryForce::add_force(double scale, Field &force, const WeightedTarget &slope, NetForce *net) {
-  VerbScope scope(Verb::surface_tension);
+  EventScope scope(Event::surface_tension);
   const Box &box = *box_;
   const int dim = box.dimension(), n = box.cells()[0];
   const double sigma = phase_->material.surface_tension;
@@ -237,7 +237,7 @@ void CapillaryForce::add_force(double scale, Field &force, const WeightedTarget 
 }
 
 void CapillaryForce::measure(const Field &velocity, int first_sum, std::vector<ExactSums> *sum) {
-  VerbScope scope(Verb::sums);
+  EventScope scope(Event::sums);
   const Box &box = *box_;
   const int dim = box.dimension(), n = box.cells()[0], first = box.layout().begin[0];
   const double sigma = phase_->material.surface_tension;

@@ -28,22 +28,22 @@ PetscErrorCode SurfaceTension::add_force(const std::vector<Phase> &phases, doubl
   PetscFunctionBeginUser;
   NetForce net(flow_.domain, balanced && flow_.drifts());
   WorkSpace::Lease lease;
-  PetscCall(flow_.work.take("curvature", fields, &lease));
+  PetscCall(flow_.work.lease("curvature", fields, &lease));
   for (const Phase &phase : phases) {
     if (!is_on_grid(phase)) continue;
     PetscCall(capillary_.find(phase, lease.fields()));
     capillary_.add_force(scale, force, slope, &net);
   }
-  PetscCall(net.take_off(force));
+  PetscCall(net.subtract_mean_force(force));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SurfaceTension::add_surface_energy(const FlowLook &bodies, SurfaceEnergy *measured,
+PetscErrorCode SurfaceTension::add_surface_energy(const SynchronisedBodies &bodies, SurfaceEnergy *measured,
                                                   std::vector<SurfaceSample> *) {
   const Domain &domain = flow_.domain;
   PetscFunctionBeginUser;
   WorkSpace::Lease lease;
-  PetscCall(flow_.work.take("curvature", fields, &lease));
+  PetscCall(flow_.work.lease("curvature", fields, &lease));
   for (const Phase &phase : bodies.phases) {
     const double sigma = phase.material.surface_tension;
     if (!is_on_grid(phase)) continue;

@@ -16,7 +16,7 @@ public:
   static constexpr int fields = CapillaryForce::work_fields;  ///< components of the work space that each call uses
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  PetscErrorCode add_surface_energy(const FlowLook &bodies, SurfaceEnergy *measured,
+  PetscErrorCode add_surface_energy(const SynchronisedBodies &bodies, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
 
   /// force += scale sigma kappa grad(phi) at owned faces; the force, times its factor, is also added to `slope`. Reads

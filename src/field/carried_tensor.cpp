@@ -18,9 +18,9 @@ std::vector<TensorComponent> tensor_locations(int dimension) {
   return {all.begin() + (dimension - 1), all.end()};  // the last diagonal component represents the centres
 }
 
-Field tensor_at_rest(const Box &box) {
+Field undeformed_tensor(const Box &box) {
   const int dimension = box.dimension();
-  return Field::at_rest(box, static_cast<int>(tensor_components(dimension).size()), dimension);
+  return Field::on_demand(box, static_cast<int>(tensor_components(dimension).size()), dimension);
 }
 
 }  // namespace eulastic

@@ -50,10 +50,10 @@ struct EvolveRule {
 /// the body (bending), or five with the motion in a step.
 inline constexpr EvolveRule around_membranes{EvolveRule::nowhere, EvolveRule::nowhere, 1e-30, 0, 5};
 
-/// Calls use(viscosity) with the viscosity type for the kernels of the elastic stress: OwnViscosity or SameViscosity.
+/// Calls use(viscosity) with the viscosity type for the kernels of the elastic stress: SolidViscosity or SameViscosity.
 template <class Use>
 EULASTIC_INLINE auto with_viscosity(const EvolveRule &rule, const Use &use) {
-  if (rule.viscosity_excess != 0) return use(kernels::OwnViscosity{rule.viscosity_excess});
+  if (rule.viscosity_excess != 0) return use(kernels::SolidViscosity{rule.viscosity_excess});
   return use(kernels::SameViscosity{});
 }
 
@@ -73,6 +73,6 @@ struct CarriedTensor {
 };
 
 /// Returns a tensor field of the value I.
-Field tensor_at_rest(const Box &box);
+Field undeformed_tensor(const Box &box);
 
 }  // namespace eulastic

@@ -79,7 +79,7 @@ Field::Memory Field::allocate(std::size_t values) {
 
 // Pages are copied by the system when they are first written. Zeros are mapped from a file like ones, because not every
 // system shares a page of zeros among all pages that are only read.
-Field::Memory Field::allocate_at_rest(std::size_t values, std::size_t ones) {
+Field::Memory Field::allocate_on_demand(std::size_t values, std::size_t ones) {
   static const int file_of_zeros = create_file_of(0), file_of_ones = create_file_of(1);
   const std::size_t bytes = values * sizeof(double);
   Memory memory(static_cast<double *>(map_pages(nullptr, bytes, MAP_ANONYMOUS | MAP_NORESERVE, -1)),
@@ -106,13 +106,13 @@ Field::Field(const Box &box, int count) : layout_(box.layout()), count_(count) {
   clear();
 }
 
-Field Field::at_rest(const Box &box, int count, int ones) {
+Field Field::on_demand(const Box &box, int count, int ones) {
   Field field;
   field.layout_ = box.layout();
   field.count_ = count;
   field.on_demand_ = true;
   field.ones_ = ones;
-  field.data_ = allocate_at_rest(field.size(), ones * field.layout_.size);
+  field.data_ = allocate_on_demand(field.size(), ones * field.layout_.size);
   return field;
 }
 
@@ -146,14 +146,14 @@ void Field::copy_from(const Field &other) {
   if (is_new) {
     on_demand_ = other.on_demand_;
     ones_ = other.ones_;
-    data_ = on_demand_ ? allocate_at_rest(other.size(), ones_ * other.layout_.size) : allocate(other.size());
+    data_ = on_demand_ ? allocate_on_demand(other.size(), ones_ * other.layout_.size) : allocate(other.size());
   }
   layout_ = other.layout_;
   count_ = other.count_;
   copy(other.data_.get(), is_new);
 }
 
-void Field::leave_rest() {
+void Field::allocate_fully() {
   if (!std::exchange(on_demand_, false)) return;
   const Memory before = std::exchange(data_, allocate(size()));
   copy(before.get(), true);

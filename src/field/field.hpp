@@ -22,7 +22,7 @@ public:
   Field(const Box &box, int count);
   /// Returns a field with the defaults 1 in the first `ones` components and 0 in the others, whose memory is allocated
   /// on demand: pages that are only read take none. For fields that differ from their defaults only near bodies.
-  static Field at_rest(const Box &box, int count, int ones = 0);
+  static Field on_demand(const Box &box, int count, int ones = 0);
 
   /// Returns a field of `count` components on `box` in memory of another owner, with the values in that memory.
   static Field in_memory(const Box &box, int count, double *memory) noexcept;
@@ -50,8 +50,8 @@ public:
   /// Returns components first ... first + count - 1 as a field that shares the memory of this one and must not outlive
   /// it.
   Field part(int first, int count) noexcept;
-  /// Moves a field made by Field::at_rest() to memory that is allocated at once, with faster access.
-  void leave_rest();
+  /// Moves a field made by Field::on_demand() to memory that is allocated at once, with faster access.
+  void allocate_fully();
   /// Makes this a copy of another field of the same kind, in memory of its own.
   void copy_from(const Field &other);
   void swap(Field &other) noexcept { std::swap(*this, other); }
@@ -64,12 +64,12 @@ private:
   };
   using Memory = std::unique_ptr<double[], Deleter>;
   static Memory allocate(std::size_t values);
-  static Memory allocate_at_rest(std::size_t values, std::size_t ones);
+  static Memory allocate_on_demand(std::size_t values, std::size_t ones);
   void copy(const double *values, bool is_new);
   std::size_t size() const noexcept { return layout_.size * static_cast<std::size_t>(count_); }
   Layout layout_;
   int count_ = 0;
-  bool on_demand_ = false;  ///< made by Field::at_rest()
+  bool on_demand_ = false;  ///< made by Field::on_demand()
   int ones_ = 0;            ///< number of leading components whose default is 1
   Memory data_;
 };

@@ -30,7 +30,7 @@ std::ptrdiff_t first_offset(const Layout &layout) {
 }
 
 // Whether no ghost has to be received.
-bool is_inside(const WantedGhosts &wanted) { return wanted.rows && wanted.rows->inside(); }
+bool is_inside(const GhostUpdate &wanted) { return wanted.rows && wanted.rows->inside(); }
 
 }  // namespace
 
@@ -130,7 +130,7 @@ PetscErrorCode GhostExchange::build_scatter(int width, int fields, PetscSF *sf) 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::broadcast(const WantedGhosts &wanted,
+PetscErrorCode GhostExchange::broadcast(const GhostUpdate &wanted,
                                         PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op)) {
   PetscFunctionBeginUser;
   Field &field = *wanted.field;
@@ -141,26 +141,26 @@ PetscErrorCode GhostExchange::broadcast(const WantedGhosts &wanted,
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::begin_update(const WantedGhosts &wanted) {
+PetscErrorCode GhostExchange::begin_update(const GhostUpdate &wanted) {
   PetscFunctionBeginUser;
   if (is_inside(wanted)) PetscFunctionReturn(0);
-  VerbScope scope(Verb::exchange);
+  EventScope scope(Event::exchange);
   PetscCall(broadcast(wanted, PetscSFBcastBegin));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::end_update(const WantedGhosts &wanted) {
+PetscErrorCode GhostExchange::end_update(const GhostUpdate &wanted) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::exchange);
+  EventScope scope(Event::exchange);
   if (!is_inside(wanted)) {
-    VerbScope wait(Verb::wait);
+    EventScope wait(Event::wait);
     PetscCall(broadcast(wanted, PetscSFBcastEnd));
   }
   wrap_rows(wanted);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GhostExchange::update_ghosts(const std::vector<WantedGhosts> &wanted) {
+PetscErrorCode GhostExchange::update_ghosts(const std::vector<GhostUpdate> &wanted) {
   PetscFunctionBeginUser;
   constexpr int most = 6;  // components: every field under way keeps buffers of its own for the rest of the run
   for (auto first = wanted.begin(), last = first; first != wanted.end();) {
@@ -182,14 +182,14 @@ PetscErrorCode GhostExchange::update_ghosts(Field &field, int width, const Occup
 
 // Fills both ends of rows if x is periodic and not split. Rows behind walls are not changed: their values must not
 // depend on whether x is split.
-void GhostExchange::wrap_rows(const WantedGhosts &wanted) const {
+void GhostExchange::wrap_rows(const GhostUpdate &wanted) const {
   constexpr int ahead = 8;  // rows: hardware prefetchers do not detect accesses to the ends of rows
   if (!box_->wraps_x() || !wanted.row_ends) return;
   Field &field = *wanted.field;
   const Layout &layout = field.layout();
   const int n = layout.cells[0], width = std::min(wanted.width, layout.ghosts[0]), parts = row_parts(*box_);
   const int layers = is_inside(wanted) ? 0 : width;
-  const Box::Range y = box_->points_near(1, true, layers), z = box_->points_near(2, true, layers);
+  const Box::Range y = box_->points_with_ghosts(1, true, layers), z = box_->points_with_ghosts(2, true, layers);
   in_parallel(parts, parts, [&](int part) {
     const Piece planes(z.end - z.begin, part, parts);
     for (int f = 0; f < field.count(); ++f)

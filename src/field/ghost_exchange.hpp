@@ -20,8 +20,8 @@ namespace eulastic {
 
 /// The ghost layers of a field to update. With `rows`, outside of whose spans the field holds its default, row ends far
 /// from any span are skipped, and ghost rows as well if all spans are inside(). Without `row_ends` the ends of rows of
-/// a periodic x are not filled: fused stages do that themselves (Sides::wrap).
-struct WantedGhosts {
+/// a periodic x are not filled: fused stages do that themselves (HaloOverlap::wrap).
+struct GhostUpdate {
   Field *field;
   int width;
   const OccupiedRows *rows = nullptr;
@@ -51,16 +51,16 @@ public:
   /// ghosts behind boundaries in x and those beyond `width` in x may change; no other values do. Collective.
   PetscErrorCode update_ghosts(Field &field, int width, const OccupiedRows *rows = nullptr);
   /// Updates several fields with overlapping messages, up to six components at a time. Collective.
-  PetscErrorCode update_ghosts(const std::vector<WantedGhosts> &wanted);
+  PetscErrorCode update_ghosts(const std::vector<GhostUpdate> &wanted);
   /// The two halves of update_ghosts(). Owned values must not change in between; updates of other fields may begin.
-  PetscErrorCode begin_update(const WantedGhosts &wanted);
-  PetscErrorCode end_update(const WantedGhosts &wanted);
+  PetscErrorCode begin_update(const GhostUpdate &wanted);
+  PetscErrorCode end_update(const GhostUpdate &wanted);
 
 private:
   PetscErrorCode build_scatter(int width, int fields, PetscSF *sf);
-  PetscErrorCode broadcast(const WantedGhosts &wanted,
+  PetscErrorCode broadcast(const GhostUpdate &wanted,
                            PetscErrorCode (*bcast)(PetscSF, MPI_Datatype, const void *, void *, MPI_Op));
-  void wrap_rows(const WantedGhosts &wanted) const;
+  void wrap_rows(const GhostUpdate &wanted) const;
 
   const Box *box_;
   MPI_Comm comm_;

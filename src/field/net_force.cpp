@@ -17,7 +17,7 @@ EULASTIC_CLONES void add_force_row(int n, const double *added, double factor, do
   for (int i = 0; i < n; ++i) slope[i] = kernels::fma(factor, added[i], slope[i]);
 }
 
-void take_off_mean(const Box &box, const Real3 &mean, Field &force) {
+void subtract_mean(const Box &box, const Real3 &mean, Field &force) {
   const int n = box.cells()[0];
   for (int d = 0; d < box.dimension(); ++d) {
     if (mean[d] == 0) continue;
@@ -30,7 +30,7 @@ void take_off_mean(const Box &box, const Real3 &mean, Field &force) {
   }
 }
 
-PetscErrorCode NetForce::find_mean(Real3 *mean) {
+PetscErrorCode NetForce::compute_mean(Real3 *mean) {
   PetscFunctionBeginUser;
   *mean = {};
   if (sums_.empty()) PetscFunctionReturn(0);
@@ -41,11 +41,11 @@ PetscErrorCode NetForce::find_mean(Real3 *mean) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NetForce::take_off(Field &force) {
+PetscErrorCode NetForce::subtract_mean_force(Field &force) {
   PetscFunctionBeginUser;
   Real3 mean;
-  PetscCall(find_mean(&mean));
-  take_off_mean(*domain_, mean, force);
+  PetscCall(compute_mean(&mean));
+  subtract_mean(*domain_, mean, force);
   PetscFunctionReturn(0);
 }
 

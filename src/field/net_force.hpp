@@ -14,7 +14,7 @@ namespace eulastic {
 void add_force_row(int n, const double *added, double factor, double *force, double *slope);
 
 /// Subtracts `mean` from the force on all owned faces.
-void take_off_mean(const Box &box, const Real3 &mean, Field &force);
+void subtract_mean(const Box &box, const Real3 &mean, Field &force);
 
 /// The exact sum over all faces of the contributions to a force, with the same bits on any number of ranks.
 class NetForce {
@@ -27,9 +27,9 @@ public:
     if (!sums_.empty()) sums_[TeamMember::number() + part].add_row(d, added, box.cells()[0], box.layout().begin[0]);
   }
   /// Returns the mean force in periodic directions, 0 in the others. Collective.
-  PetscErrorCode find_mean(Real3 *mean);
+  PetscErrorCode compute_mean(Real3 *mean);
   /// Subtracts the mean from the force. Collective.
-  PetscErrorCode take_off(Field &force);
+  PetscErrorCode subtract_mean_force(Field &force);
 
 private:
   const Domain *domain_;

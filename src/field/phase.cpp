@@ -5,10 +5,10 @@
 namespace eulastic {
 
 void Phase::empty(const Box &box, bool labels) {
-  fraction = Field::at_rest(box, 1);
-  tensor.field = tensor_at_rest(box);
+  fraction = Field::on_demand(box, 1);
+  tensor.field = undeformed_tensor(box);
   tensor.centred = material.is_membrane();
-  label = labels ? Field::at_rest(box, 1) : Field();
+  label = labels ? Field::on_demand(box, 1) : Field();
 }
 
 std::size_t Phase::bytes() const {
@@ -49,7 +49,7 @@ Box Phase::block(const Box &box, int before, int behind) const {
   return Box(box.domain_shape(), begin, cells, 0);
 }
 
-Int3 first_in(const Box &box, const Box &block) {
+Int3 block_offset(const Box &box, const Box &block) {
   Int3 first;
   for (int d = 0; d < 3; ++d) first[d] = block.layout().begin[d] - box.layout().begin[d];
   return first;
@@ -69,13 +69,13 @@ void Phase::copy_from(const Phase &other) {
   if (other.label) label.copy_from(other.label);
 }
 
-PetscErrorCode PhasePlace::exchange_ghosts(Field &field, int width, const OccupiedRows *rows) const {
+PetscErrorCode PhaseDomain::exchange_ghosts(Field &field, int width, const OccupiedRows *rows) const {
   PetscFunctionBeginUser;
   if (exchange) PetscCall(exchange->update_ghosts(field, width, rows));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PhasePlace::update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const {
+PetscErrorCode PhaseDomain::update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const {
   PetscFunctionBeginUser;
   PetscCall(exchange_ghosts(tensor, width, rows));
   fill_wall_ghosts_tensor(*box, *sides, tensor, width, rows);

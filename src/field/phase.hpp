@@ -4,10 +4,10 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/boundaries.hpp"
 #include "field/carried_tensor.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/material.hpp"
-#include "field/sides.hpp"
 #include "field/surface_marker.hpp"
 #include "grid/box.hpp"
 #include "grid/occupied_rows.hpp"
@@ -30,7 +30,7 @@ struct Phase {
 
   /// Bytes of the fields on this rank. Pages of the grid that are never written, as for bodies in boxes, do not count.
   std::size_t bytes() const;
-  /// Makes a phase without bodies: phi = 0, B = I, labels (if `labels`) 0, in memory on demand (Field::at_rest).
+  /// Makes a phase without bodies: phi = 0, B = I, labels (if `labels`) 0, in memory on demand (Field::on_demand).
   void empty(const Box &box, bool labels);
   /// Returns the smallest block of cells that contains all cells with phi > 0. `box` must be complete on this rank.
   Extent extent(const Box &box) const;
@@ -43,7 +43,7 @@ struct Phase {
 };
 
 /// Returns the local indices in `box` of the first cell of a block inside it.
-Int3 first_in(const Box &box, const Box &block);
+Int3 block_offset(const Box &box, const Box &block);
 
 /// A body in a box of its own, which is complete on this rank, as measures access it.
 struct BodyInBox {
@@ -56,13 +56,13 @@ struct BodyInBox {
 };
 
 /// Box, boundaries and ghost exchange of a phase.
-struct PhasePlace {
+struct PhaseDomain {
   const Box *box;
-  const BoxSides *sides;
+  const BoundaryConditions *sides;
   /// Null if the box is complete on this rank: its ghosts are behind boundaries of the domain, or far from bodies.
   GhostExchange *exchange;
 
-  /// Updates ghosts that other ranks own; `rows` as in WantedGhosts.
+  /// Updates ghosts that other ranks own; `rows` as in GhostUpdate.
   PetscErrorCode exchange_ghosts(Field &field, int width, const OccupiedRows *rows) const;
   /// Updates ghosts of B, from other ranks and behind boundaries.
   PetscErrorCode update_ghosts(Field &tensor, int width, const OccupiedRows *rows) const;

@@ -106,7 +106,7 @@ double RigidFaces::shortest_period() const {
   return frequency > 0 ? 2 * M_PI / frequency : std::numeric_limits<double>::infinity();
 }
 
-void RigidFaces::find_beside(int d, bool high, int j, int k, std::vector<int> *found) const {
+void RigidFaces::find_bodies_beside(int d, bool high, int j, int k, std::vector<int> *found) const {
   const int shift = d == 0 && high, cells = static_cast<int>(found->size());
   const Row faces = row(d, j + (d == 1 && high), k + (d == 2 && high));
   std::fill(found->begin(), found->end(), -1);

@@ -140,7 +140,7 @@ public:
   }
   /// Sets found[i] to the body on the low or high face across d of cell i of row (j, k), or to -1. The size of `found`
   /// is the number of cells.
-  void find_beside(int d, bool high, int j, int k, std::vector<int> *found) const;
+  void find_bodies_beside(int d, bool high, int j, int k, std::vector<int> *found) const;
   /// Returns all cut faces of component a, including ghost rows.
   const std::vector<Cut> &cuts(int a) const { return components_[a].cuts; }
   /// Returns component a of the velocity of a body at a face, for given factors of its motion.
@@ -167,7 +167,7 @@ private:
 };
 
 /// Returns the position of face i of component a in row (j, k), in cells from the middle of the box.
-inline Real3 place_of_face(const Box &box, int a, int i, int j, int k) {
+inline Real3 face_position(const Box &box, int a, int i, int j, int k) {
   const Int3 &begin = box.layout().begin, local{i, j, k};
   Real3 place{};
   for (int d = 0; d < box.dimension(); ++d)

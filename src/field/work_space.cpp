@@ -40,7 +40,7 @@ PetscErrorCode WorkSpace::reserve(int count) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode WorkSpace::take(const char *name, int count, Lease *lease) {
+PetscErrorCode WorkSpace::lease(const char *name, int count, Lease *lease) {
   PetscFunctionBeginUser;
   const auto at = std::search_n(holder_.begin(), holder_.end(), count, nullptr);
   PetscCheck(at != holder_.end() || count == 0, domain_->comm(), PETSC_ERR_PLIB, "no work space for %s (%d fields): %s",

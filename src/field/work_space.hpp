@@ -36,7 +36,7 @@ public:
   /// Makes sure that there are at least `count` fields. No field may be leased.
   PetscErrorCode reserve(int count);
   /// Leases `count` consecutive fields. Fails if there are not enough free fields, with the names of all holders.
-  PetscErrorCode take(const char *name, int count, Lease *lease);
+  PetscErrorCode lease(const char *name, int count, Lease *lease);
   std::size_t bytes() const { return fields_.bytes(); }
 
 private:

@@ -91,7 +91,7 @@ EULASTIC_CLONES void correct_rows_by_formula(const Box &box, const RowPart &part
 PetscErrorCode correct_velocity(const Box &box, double density, double dt, double rotation, const Field &increment,
                                 const Field &divergence, Field &velocity, Field &pressure) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::correction);
+  EventScope scope(Event::correction);
   in_row_parts(box, [&](const RowPart &part) {
     correct_rows(box, part.with_ghosts(box), dt / density, rotation, increment, divergence, velocity, pressure);
   });
@@ -110,7 +110,7 @@ PetscErrorCode correct_velocity(const Box &box, double density, double dt, doubl
                                 const kernels::AcmIncrement &increment, const Field &divergence, Field &velocity,
                                 Field &pressure) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::correction);
+  EventScope scope(Event::correction);
   const int parts = row_parts(box);
   std::vector<RowScratch> increments;
   for (int part = 0; part < parts; ++part) increments.emplace_back(box, box.cells()[1] + 2);

@@ -54,26 +54,26 @@ EULASTIC_CLONES void iterate_row(int begin, int end, Iteration c, Row correction
   }
 }
 
-bool moves(const BoxSides &increments) {
+bool moves(const BoundaryConditions &increments) {
   for (const auto &pair : increments)
-    for (const Side &side : pair)
-      if (side.motion.velocity != Real3{} || (side.kind == SideKind::inflow && side.given.value != 0)) return true;
+    for (const BoundaryCondition &side : pair)
+      if (side.motion.velocity != Real3{} || (side.kind == BoundaryKind::inflow && side.given.value != 0)) return true;
   return false;
 }
 
 // Where an increment of component a is 0: on closed boundaries, on planes of symmetry if it is normal to them.
-ZeroSides zero_sides(const Box &box, const BoxSides &sides, int a) {
+ZeroSides zero_sides(const Box &box, const BoundaryConditions &sides, int a) {
   ZeroSides zero{};
   for (const auto [d, high] : box.sides()) {
-    const SideKind kind = sides[d][high].kind;
-    zero[d][high] = is_solid(kind) || (kind == SideKind::symmetry && a == d);
+    const BoundaryKind kind = sides[d][high].kind;
+    zero[d][high] = is_solid(kind) || (kind == BoundaryKind::symmetry && a == d);
   }
   return zero;
 }
 
 }  // namespace
 
-PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoxSides &sides, double viscosity,
+PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoundaryConditions &sides, double viscosity,
                                          double tolerance) {
   PetscFunctionBeginUser;
   domain_ = &domain;
@@ -153,7 +153,7 @@ void ImplicitViscosity::weight_open_faces(double factor, Field &field) const {
   for (int a = 0; a < domain_->dimension(); ++a)
     for (const bool high : {false, true}) {
       if (!domain_->is_open(a, high)) continue;
-      for (const Segment &row : domain_->faces_on(a, high)) {
+      for (const Segment &row : domain_->boundary_faces(a, high)) {
         double *values = field[a].row(row.j, row.k);
         for (int i = row.i_begin; i < row.i_end; ++i) values[i] *= factor;
       }
@@ -201,7 +201,7 @@ PetscErrorCode ImplicitViscosity::multiply(GhostExchange &exchange, const Viscou
 PetscErrorCode ImplicitViscosity::add_boundaries(GhostExchange &exchange, const ViscousStep &step, double from,
                                                  double to, double part, Field &right_side) {
   PetscFunctionBeginUser;
-  const BoxSides increments = sides_of_increment(step.sides, from, to);
+  const BoundaryConditions increments = sides_of_increment(step.sides, from, to);
   if (!moves(increments)) PetscFunctionReturn(0);
   ++products_;
   correction_.clear();
@@ -312,7 +312,7 @@ PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousSt
 PetscErrorCode ImplicitViscosity::step(GhostExchange &exchange, const ViscousStep &step, Field &rate,
                                        const Field *slope, Field &velocity_star) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::viscous);
+  EventScope scope(Event::viscous);
   const int dim = domain_->dimension();
   const double part = share * step.dt;
   Size size{};
@@ -329,7 +329,7 @@ PetscErrorCode ImplicitViscosity::step(GhostExchange &exchange, const ViscousSte
     for (Segment &row : rows) row.i_end += a == 0 && domain_->is_open(0, true) && domain_->touches_high(0);
     if (a > 0)
       for (const Segment &row : domain_->open_high_faces(a)) rows.push_back(row);
-    in_parts_of(rows, *domain_, [&](const Segment *begin, const Segment *end) {
+    in_segment_parts(rows, *domain_, [&](const Segment *begin, const Segment *end) {
       for (const Segment *row = begin; row < end; ++row)
         add_row(row->i_begin, row->i_end, 1, step.velocity[a].row(row->j, row->k), solution[a].row(row->j, row->k));
     });

@@ -119,7 +119,7 @@ std::array<int, 2> shear_wave_directions(InitialVelocity kind) {
   return {name[name.size() - 2] - 'x', name.back() - 'x'};
 }
 
-void set_initial_velocity(const Box &box, const BoxSides &sides, const InitialFlow &flow, Field &velocity) {
+void set_initial_velocity(const Box &box, const BoundaryConditions &sides, const InitialFlow &flow, Field &velocity) {
   const Pointwise value{
       box.domain_shape(), flow, sides[1][0].motion.at(0), sides[1][1].motion.at(0),
       flow.kind == InitialVelocity::random ? random_modes(box.domain_shape(), flow.amplitude) : Modes{}};

@@ -1,7 +1,7 @@
 // Analytical initial velocities, evaluated at the faces.
 #pragma once
 
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 #include <string>
 #include <vector>
@@ -41,6 +41,6 @@ struct InitialFlow {
 /// other directions and ghosts are set by fill_wall_ghosts_velocity and the exchange. The value at a face depends on
 /// its position alone, so that the bits do not depend on the ranks. The flow is solenoidal up to the truncation error
 /// of the grid; a projection must follow.
-void set_initial_velocity(const Box &box, const BoxSides &sides, const InitialFlow &flow, Field &velocity);
+void set_initial_velocity(const Box &box, const BoundaryConditions &sides, const InitialFlow &flow, Field &velocity);
 
 }  // namespace eulastic

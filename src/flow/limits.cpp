@@ -2,7 +2,7 @@
 
 #include "base/exact_sum.hpp"
 #include "field/law.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "grid/threads.hpp"
 #include "kernels/isa.hpp"
 
@@ -76,7 +76,7 @@ public:
           if (r.bad) record_bad_cell(box, row, {0, n, j, k});
         }
     for (int d = 0; d < velocity.count() && rows.first; ++d)
-      for (const Segment &row : box.faces_on(d, true))
+      for (const Segment &row : box.boundary_faces(d, true))
         largest_[d] =
             std::max(largest_[d], row_extremes(velocity[d].row(row.j, row.k), row.i_begin, row.i_end).largest);
   }
@@ -170,7 +170,7 @@ PetscErrorCode measure_extremes(const Domain &domain, const Field &velocity, con
   std::vector<double> largest;
   PetscCall(reduce_maxima(domain.comm(), maxima, &largest));
   extremes->speed = {largest[0], largest[1], largest[2]};
-  extremes->first_bad = largest[Extremes::bad_cell] == -infinite ? -1 : -largest[Extremes::bad_cell];
+  extremes->first_non_finite = largest[Extremes::bad_cell] == -infinite ? -1 : -largest[Extremes::bad_cell];
   extremes->trace.assign(largest.begin() + Extremes::first_trace, largest.end());
   extremes->stiffness = 0;
   for (std::size_t p = 0; p < phases.size(); ++p)
@@ -180,13 +180,13 @@ PetscErrorCode measure_extremes(const Domain &domain, const Field &velocity, con
 }
 
 TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid,
-                                const ViscosityContrast &contrast, const BoxSides &sides, const FlowExtremes &extremes,
-                                const StepScheme &scheme) {
+                                const ViscosityContrast &contrast, const BoundaryConditions &sides,
+                                const FlowExtremes &extremes, const StepScheme &scheme) {
   double S = 0, crossing = 0, gain = 0, speed_squared = 0, frequency = std::fabs(fluid.body_force.frequency);
   for (int d = 0; d < dimension; ++d) {
     double speed = extremes.speed[d];
     for (const auto &pair : sides)
-      for (const Side &side : pair) {
+      for (const BoundaryCondition &side : pair) {
         speed = std::max(speed, std::fabs(side.motion.velocity[d]));
         frequency = std::max({frequency, std::fabs(side.motion.frequency), side.given.angular_frequency()});
       }
@@ -247,7 +247,7 @@ double TimeStepLimits::automatic(const char **name) const {
   return least->dt;
 }
 
-const char *TimeStepLimits::broken(double dt) const {
+const char *TimeStepLimits::exceeded_limit(double dt) const {
   const double share = scheme.staggered ? advective_staggered : advective_euler;
   if (scheme.rkl) {
     if (dt >= std::max(elastic, kelvin_voigt)) return "elastic wave and Kelvin-Voigt";

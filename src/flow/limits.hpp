@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "flow/viscosity.hpp"
 #include "grid/domain.hpp"
 
@@ -11,11 +11,11 @@ namespace eulastic {
 
 /// Largest values over the whole grid, computed with one Allreduce.
 struct FlowExtremes {
-  Real3 speed{};              ///< max |u|, |v|, |w|
-  double stiffness = 0;       ///< largest_stiffness() of all phases, from their largest tr B
-  std::vector<double> trace;  ///< largest tr B of each phase at evolving points
-  double first_bad = -1;      ///< global index of the first cell with a non-finite velocity or B; -1: none
-  double max_speed() const;   ///< largest speed of all components
+  Real3 speed{};                 ///< max |u|, |v|, |w|
+  double stiffness = 0;          ///< largest_stiffness() of all phases, from their largest tr B
+  std::vector<double> trace;     ///< largest tr B of each phase at evolving points
+  double first_non_finite = -1;  ///< global index of the first cell with a non-finite velocity or B; -1: none
+  double max_speed() const;      ///< largest speed of all components
 };
 
 /// Computes the extremes of the flow. `bodies`: bodies in boxes of this rank, which count with the phases of their
@@ -55,15 +55,16 @@ struct TimeStepLimits {
   /// Returns the automatic step, and in *name the limit that determines it.
   double automatic(const char **name = nullptr) const;
   /// Returns the name of the first stability limit that dt exceeds, or null.
-  const char *broken(double dt) const;
+  const char *exceeded_limit(double dt) const;
 };
 
 /// Computes the limits. `contrast` and `extremes` must be those of the same bodies.
 TimeStepLimits time_step_limits(const Real3 &spacing, int dimension, const Fluid &fluid,
-                                const ViscosityContrast &contrast, const BoxSides &sides, const FlowExtremes &extremes,
-                                const StepScheme &scheme);
+                                const ViscosityContrast &contrast, const BoundaryConditions &sides,
+                                const FlowExtremes &extremes, const StepScheme &scheme);
 inline TimeStepLimits time_step_limits(const Box &box, const Fluid &fluid, const ViscosityContrast &contrast,
-                                       const BoxSides &sides, const FlowExtremes &extremes, const StepScheme &scheme) {
+                                       const BoundaryConditions &sides, const FlowExtremes &extremes,
+                                       const StepScheme &scheme) {
   return time_step_limits(box.spacing(), box.dimension(), fluid, contrast, sides, extremes, scheme);
 }
 

@@ -128,7 +128,7 @@ constexpr int rows_of_block = block_rows / 2;
 // Computes the rate, and calls after(rows) while these rows are in the caches.
 template <class After>
 void compute_rate(const RateTerms &t, Field &out, const After &after) {
-  VerbScope scope(Verb::momentum);
+  EventScope scope(Event::momentum);
   const int dim = t.box.dimension();
   in_row_parts(t.box, [&](const RowPart &part) {
     RowScratch scratch(t.box, 1);

@@ -1,7 +1,7 @@
 #include "flow/projection.hpp"
 
 #include "base/events.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "flow/correction.hpp"
 #include "flow/momentum.hpp"
 #include "flow/viscous_stress.hpp"
@@ -9,7 +9,7 @@
 #include "kernels/momentum.hpp"
 #include "parts/flow_part.hpp"
 #include "pressure/acm.hpp"
-#include "pressure/acm_sweeps.hpp"
+#include "pressure/acm_iterations.hpp"
 #include "pressure/ksp.hpp"
 #include "pressure/obstacles.hpp"
 #include "pressure/smac.hpp"
@@ -40,7 +40,7 @@ EULASTIC_CLONES void divergence_3d(const Box &box, const RowPart &part, double d
 
 PetscErrorCode compute_divergence(const Box &box, double density, const Field &velocity_star, Field &divergence) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::divergence);
+  EventScope scope(Event::divergence);
   in_row_parts(box, [&](const RowPart &part) {
     (box.dimension() == 2 ? divergence_2d : divergence_3d)(box, part, density, velocity_star, divergence);
   });
@@ -49,10 +49,10 @@ PetscErrorCode compute_divergence(const Box &box, double density, const Field &v
 }
 
 int Projection::work_fields(const Method &method, bool open, bool rigid) {
-  const bool sweeps = method.pressure == PressureKind::acm && !method.acm_of_the_paper();
+  const bool sweeps = method.pressure == PressureKind::acm && !method.is_single_acm_step();
   const bool formula = method.pressure == PressureKind::acm && !sweeps && !open;
-  return 1 + !formula + (sweeps ? AcmSweepSolver::work_fields : 0) +
-         (rigid && !method.acm_of_the_paper() ? ObstacleSolver::work_fields : 0);
+  return 1 + !formula + (sweeps ? AcmIterativeSolver::work_fields : 0) +
+         (rigid && !method.is_single_acm_step() ? ObstacleSolver::work_fields : 0);
 }
 
 PetscErrorCode Projection::create(int memory) {
@@ -64,10 +64,10 @@ PetscErrorCode Projection::create(int memory) {
     auto ksp = std::make_unique<KspSolver>();
     PetscCall(ksp->create(flow_.domain, flow_.exchange));
     solver_ = std::move(ksp);
-  } else if (spec.acm_of_the_paper()) {
+  } else if (spec.is_single_acm_step()) {
     solver_ = std::make_unique<AcmSolver>(flow_.domain);
   } else {
-    auto sweeps = std::make_unique<AcmSweepSolver>();
+    auto sweeps = std::make_unique<AcmIterativeSolver>();
     PetscCall(sweeps->create(flow_.domain, flow_.exchange, {spec.acm_sweeps_max, memory, spec.acm_coarse}, flow_.work));
     solver_ = std::move(sweeps);
   }
@@ -97,24 +97,25 @@ PetscErrorCode Projection::correct(double dt, double rotation, const Field &dive
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Projection::end_step(double dt, const PressureRotation &rotation, const Field &viscosity) {
+PetscErrorCode Projection::end_step(double dt, const RotationalUpdate &rotation, const Field &viscosity) {
   const Real3 &h = flow_.domain.spacing();
   const double shortest = flow_.domain.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]);
   const double target = flow_.spec.acm_tolerance * flow_.fluid.density * flow_.speed_scale(dt) / shortest;
   WorkSpace::Lease divergence_lease, increment;
   PetscFunctionBeginUser;
-  PetscCall(flow_.work.take("divergence", 1, &divergence_lease));
-  if (!solver_->formula()) PetscCall(flow_.work.take("pressure increment", 1, &increment));
+  PetscCall(flow_.work.lease("divergence", 1, &divergence_lease));
+  if (!solver_->formula()) PetscCall(flow_.work.lease("pressure increment", 1, &increment));
   Field &divergence = divergence_lease.fields(), &pressure = flow_.now.pressure, &velocity = flow_.velocity_star;
   PetscCall(find_increment(dt, target, velocity, pressure, divergence, increment.fields()));
   for (FlowPart *part : flow_.parts) {
     PetscCall(part->begin_correction(divergence));
-    if (!solver_->formula()) PetscCall(part->see_increment(increment.fields()));
+    if (!solver_->formula()) PetscCall(part->observe_increment(increment.fields()));
   }
   PetscCall(correct(dt, rotation.uniform, divergence, increment.fields(), velocity, pressure));
   for (FlowPart *part : flow_.parts) PetscCall(part->correct(flow_.now.time + dt, dt, increment.fields(), velocity));
   for (FlowPart *part : flow_.parts) PetscCall(part->end_projection(dt, divergence, increment.fields()));
-  if (rotation.local > 0) PetscCall(rotate_pressure(flow_.domain, viscosity, rotation.local, divergence, pressure));
+  if (rotation.local > 0)
+    PetscCall(apply_rotational_update(flow_.domain, viscosity, rotation.local, divergence, pressure));
   flow_.now.velocity.swap(velocity);
   PetscFunctionReturn(0);
 }
@@ -122,12 +123,12 @@ PetscErrorCode Projection::end_step(double dt, const PressureRotation &rotation,
 // The paper's single step of artificial compressibility is repeated until the velocity is nearly solenoidal.
 PetscErrorCode Projection::make_solenoidal(bool is_rate, Field &velocity, Field &pressure) {
   constexpr double dt = 1;
-  const int iterations = flow_.spec.pressure == PressureKind::acm && flow_.spec.acm_of_the_paper() ? 200 : 1;
+  const int iterations = flow_.spec.pressure == PressureKind::acm && flow_.spec.is_single_acm_step() ? 200 : 1;
   WorkSpace::Lease divergence_lease, increment;
   Field pressure_correction(flow_.domain, 1);  // starts at 0, so that (11) has no relaxation
   PetscFunctionBeginUser;
-  PetscCall(flow_.work.take("divergence", 1, &divergence_lease));
-  if (!solver_->formula()) PetscCall(flow_.work.take("pressure increment", 1, &increment));
+  PetscCall(flow_.work.lease("divergence", 1, &divergence_lease));
+  if (!solver_->formula()) PetscCall(flow_.work.lease("pressure increment", 1, &increment));
   Field &divergence = divergence_lease.fields();
   for (int n = 0; n < iterations; ++n) {
     PetscCall(flow_.exchange.update_ghosts(velocity, 1));
@@ -148,11 +149,11 @@ PetscErrorCode Projection::make_solenoidal(bool is_rate, Field &velocity, Field 
 namespace {
 
 // Returns boundary conditions whose given velocities are the time derivatives of those of `sides`.
-BoxSides time_derivatives_of(const BoxSides &sides, double time) {
-  BoxSides rates = sides;
+BoundaryConditions time_derivatives_of(const BoundaryConditions &sides, double time) {
+  BoundaryConditions rates = sides;
   for (auto &pair : rates)
     // inlet generators have no velocity yet at the start
-    for (Side &side : pair) side.given = {side.given.rate(time), 0, 0, {}};
+    for (BoundaryCondition &side : pair) side.given = {side.given.rate(time), 0, 0, {}};
   return rates;
 }
 
@@ -181,7 +182,7 @@ PetscErrorCode start_flow(Flow *flow, Projection *projection) {
       set_inflow_faces(domain, time_derivatives_of(flow->spec.sides, now.time), 0, rate[d], d);
     }
   const double nu = flow->fluid.kinematic_viscosity();
-  if (flow->rigid) see_rigid_surfaces(domain, *flow->rigid, nu, nu, now.time, 0, now.velocity, rate, nullptr);
+  if (flow->rigid) apply_rigid_surfaces(domain, *flow->rigid, nu, nu, now.time, 0, now.velocity, rate, nullptr);
   PetscCall(projection->make_solenoidal(true, rate, now.pressure));
   PetscCall(flow->update_centre_ghosts(now.pressure, 1));
   PetscFunctionReturn(0);

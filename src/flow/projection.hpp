@@ -15,7 +15,7 @@ namespace eulastic {
 PetscErrorCode compute_divergence(const Box &box, double density, const Field &velocity_star, Field &divergence);
 
 /// Factors of the rotational update of the pressure: of D*, and of D* times the local kinematic viscosity.
-struct PressureRotation {
+struct RotationalUpdate {
   double uniform = 0, local = 0;
 };
 
@@ -35,7 +35,7 @@ public:
 
   /// Ends a step: makes Flow::velocity_star, with one valid ghost layer, the new velocity and updates the pressure to
   /// the end or the middle of the step. `viscosity`: LocalViscosity::fields if rotation.local is not 0. Collective.
-  PetscErrorCode end_step(double dt, const PressureRotation &rotation, const Field &viscosity);
+  PetscErrorCode end_step(double dt, const RotationalUpdate &rotation, const Field &viscosity);
   /// Subtracts grad q from `velocity` and adds q to `pressure`, with the q that makes `velocity` solenoidal; `is_rate`:
   /// it is the time derivative of a velocity. Owned cells only. Collective.
   PetscErrorCode make_solenoidal(bool is_rate, Field &velocity, Field &pressure);

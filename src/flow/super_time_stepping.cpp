@@ -1,7 +1,7 @@
 #include "flow/super_time_stepping.hpp"
 
 #include "base/events.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "flow/rkl_coefficients.hpp"
 #include "flow/stress_rows.hpp"
 #include "flow/tangential_stress.hpp"
@@ -15,17 +15,17 @@ namespace eulastic {
 namespace {
 
 // Boundaries of the box for the stages.
-struct StageSides : Sides {
+struct StageSides : HaloOverlap {
   bool fixed[3][2];  // this rank touches the boundary, and the normal velocity on it is given
   bool open[3][2];   // this rank touches the boundary, and the normal velocity on it is an unknown
   bool any_beside;   // any boundary is open or an inflow, so that beside_row() is needed
 
-  StageSides(const Box &box, const BoxSides &sides) : Sides(box), any_beside(false) {
+  StageSides(const Box &box, const BoundaryConditions &sides) : HaloOverlap(box), any_beside(false) {
     for (int d = 0; d < 3; ++d) {
       for (const bool high : {false, true}) {
         open[d][high] = wall[d][high] && box.is_open(d, high);
         fixed[d][high] = wall[d][high] && !open[d][high];
-        any_beside = any_beside || open[d][high] || (fixed[d][high] && sides[d][high].kind == SideKind::inflow);
+        any_beside = any_beside || open[d][high] || (fixed[d][high] && sides[d][high].kind == BoundaryKind::inflow);
       }
       beyond[d] = open[d][1];
     }
@@ -53,7 +53,7 @@ struct Pass {
   bool starts, ends;
   double first, half;  // W_1 = first (M_0 + half M_1), with the force at the start of the step
   kernels::RklStage stage[deepest];
-  BoxSides increments[deepest];  // given values on boundaries when a stage reads, less those at the start
+  BoundaryConditions increments[deepest];  // given values on boundaries when a stage reads, less those at the start
   std::vector<RigidStage> rigid;
 
   bool has_slope(const Segment &row) const {
@@ -95,7 +95,7 @@ struct UniformViscosity {
   PetscErrorCode prepare(GhostExchange &exchange, Pass *pass) const {
     PetscFunctionBeginUser;
     SuperTimeStepping &work = pass->work;
-    std::vector<WantedGhosts> read{
+    std::vector<GhostUpdate> read{
         {pass->starts ? &work.rate : &work.now, pass->starts ? depth : pass->depth, nullptr, false}};
     if (pass->starts && work.slope) read.push_back({&work.slope, depth, nullptr, false});
     if (!pass->starts && pass->depth > 2) read.push_back({&work.before, pass->depth - 1, nullptr, false});
@@ -116,9 +116,9 @@ struct UniformViscosity {
       if (sides.open[a][high] && a == 0) row[face + outward] = row[inside];
       if (sides.open[a][high] && a != 0 && place[a] == face)
         for (int i = at.i_begin; i < at.i_end; ++i) row[i + outward] = row[i - outward];
-      const Side &side = pass.increments[s][a][high];
+      const BoundaryCondition &side = pass.increments[s][a][high];
       const double more = side.given.value;
-      if (!sides.fixed[a][high] || side.kind != SideKind::inflow || more == 0) continue;
+      if (!sides.fixed[a][high] || side.kind != BoundaryKind::inflow || more == 0) continue;
       if (a == 0) set_inflow_row(pass.domain, side, a, high, more, at, w);
       if (a != 0 && place[a] == inside) {
         Segment face_row = at;
@@ -140,7 +140,7 @@ struct UniformViscosity {
         const int last = d == 0 ? place[0] : high ? n[d] - 1 : 0;
         if (a == d || !pass.sides.wall[d][high] || place[d] != last) continue;
         const std::ptrdiff_t outward = high ? w.stride(d) : -w.stride(d);
-        const Side &side = pass.increments[s][d][high];
+        const BoundaryCondition &side = pass.increments[s][d][high];
         const double twice = 2 * side.motion.velocity[a], sign = is_solid(side.kind) ? -1 : 1;
         if (d == 0) {
           double *inside = high ? row + n[0] - 1 : row;
@@ -171,7 +171,7 @@ EULASTIC_INLINE void stress_stage(const Pass &pass, const Field &viscosity, int 
   const auto stress = stress_on_row<Dim>(pass.domain, viscosity, from, a, faces.j, faces.k);
   if (side != 0)
     return stage_row(
-        pass, s, a, faces, from[a], [=](int i) EULASTIC_BODY { return stress.force_on_side(i, side); }, out);
+        pass, s, a, faces, from[a], [=](int i) EULASTIC_BODY { return stress.force_on_open_boundary(i, side); }, out);
   stage_row(
       pass, s, a, faces, from[a], [=](int i) EULASTIC_BODY { return stress.force(i); }, out);
 }
@@ -201,7 +201,7 @@ struct LocalStress {
     if (pass->starts) PetscFunctionReturn(0);
     PetscCall(exchange.update_ghosts(pass->work.now, 2));
     fill_wall_ghosts_velocity(box, pass->increments[0], 0, pass->work.now, 2);
-    find_tangential_stress(box, pass->work.now, &local);
+    compute_tangential_stress(box, pass->work.now, &local);
     PetscFunctionReturn(0);
   }
   template <int Dim>
@@ -289,7 +289,7 @@ EULASTIC_INLINE void stages_of_task(const Pass &pass, const Term &term, const St
   const Int3 n = pass.domain.cells();
   const StageSides &sides = pass.sides;
   const int a_begin = Term::couples ? 0 : task.field, a_end = Term::couples ? Dim : task.field + 1;
-  order.go<Dim>(task, [&](int stage, Segment row, int j_end) EULASTIC_BODY {
+  order.for_rows<Dim>(task, [&](int stage, Segment row, int j_end) EULASTIC_BODY {
     const int s = stage - pass.starts;  // -1: stage 1, W_1
     Field &from = s % 2 ? pass.work.before : pass.work.now, &to = s % 2 ? pass.work.now : pass.work.before;
     const int first = row.j, i_end = row.i_end;
@@ -342,7 +342,7 @@ template <class Term>
 PetscErrorCode take_stages(const Domain &domain, GhostExchange &exchange, Term term, const ViscousStep &step,
                            SuperTimeStepping &work, Field &velocity_star) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::viscous);
+  EventScope scope(Event::viscous);
   const int stages = step.stages, dim = domain.dimension();
   const StageSides sides(domain, step.sides);
   for (Field *field : {&work.rate, &work.slope, &work.now, &work.before})
@@ -393,8 +393,8 @@ std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases
   return stressed;
 }
 
-BoxSides sides_of_increment(const BoxSides &box_sides, double from, double to) {
-  BoxSides sides = box_sides;
+BoundaryConditions sides_of_increment(const BoundaryConditions &box_sides, double from, double to) {
+  BoundaryConditions sides = box_sides;
   for (std::size_t d = 0; d < 3; ++d)
     for (std::size_t side = 0; side < 2; ++side) {
       const Real3 u = box_sides[d][side].motion.at(from), v = box_sides[d][side].motion.at(to);

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/boundaries.hpp"
 #include "field/ghost_exchange.hpp"
 #include "field/phase.hpp"
 #include "field/rigid_faces.hpp"
-#include "field/sides.hpp"
 #include "flow/viscosity.hpp"
 #include "grid/domain.hpp"
 
@@ -19,7 +19,7 @@ struct RigidMeans;
 int rkl_stages(double dt, double dt_explicit);
 
 /// Returns boundary conditions whose velocities are the changes of the given ones between two times.
-BoxSides sides_of_increment(const BoxSides &sides, double from, double to);
+BoundaryConditions sides_of_increment(const BoundaryConditions &sides, double from, double to);
 
 /// Returns for every row of owned cells whether any phase exerts a force there.
 std::vector<char> stressed_rows(const Box &box, const std::vector<Phase> &phases);
@@ -33,7 +33,7 @@ struct SuperTimeStepping {
 
 /// Input of a viscous step.
 struct ViscousStep {
-  const BoxSides &sides;
+  const BoundaryConditions &sides;
   double time, dt;
   int stages;  ///< from rkl_stages(); or 1 for explicit Euler, which does not use `before`
   const Field &velocity;

@@ -81,10 +81,10 @@ void prefetch_ahead(const LocalViscosity &viscosity, const Field &velocity, cons
 
 }  // namespace
 
-void find_tangential_stress(const Box &box, const Field &velocity, LocalViscosity *viscosity) {
+void compute_tangential_stress(const Box &box, const Field &velocity, LocalViscosity *viscosity) {
   constexpr std::ptrdiff_t ahead = 8;
   const bool flat = box.dimension() == 2;
-  in_parts_of(viscosity->stressed.all(), box, [&](const Segment *begin, const Segment *end) {
+  in_segment_parts(viscosity->stressed.all(), box, [&](const Segment *begin, const Segment *end) {
     for (const Segment *cells = begin; cells < end; ++cells) {
       if (!flat && end - cells > ahead) prefetch_ahead(*viscosity, velocity, cells[ahead]);
       (flat ? tangential_row_2d : tangential_row_3d)(box, viscosity->fields, velocity, viscosity->stress, *cells);

@@ -6,7 +6,7 @@
 namespace eulastic {
 
 /// Computes the stress at the centres viscosity->stressed and stores it in viscosity->stress. v needs two ghosts.
-void find_tangential_stress(const Box &box, const Field &velocity, LocalViscosity *viscosity);
+void compute_tangential_stress(const Box &box, const Field &velocity, LocalViscosity *viscosity);
 /// Adds `scale` times the force of this stress to `out` on the faces of a row normal to a.
 void add_tangential_force(const Box &box, const LocalViscosity &viscosity, double scale, int a, const Segment &faces,
                           double *out);

@@ -123,10 +123,10 @@ EULASTIC_CLONES void along_surface_3d(const Segment &row, const Mixture &mixture
 }
 
 // Clears the excess beside boundaries other than planes of symmetry, so that edges on a boundary are not affected.
-void clear_beside_sides(const Box &box, const BoxSides &sides, const Segment &row, double *values) {
+void clear_beside_sides(const Box &box, const BoundaryConditions &sides, const Segment &row, double *values) {
   const int place[3] = {0, row.j, row.k};
   for (const auto [d, high] : box.sides()) {
-    if (!box.touches(d, high) || sides[d][high].kind == SideKind::symmetry) continue;
+    if (!box.touches(d, high) || sides[d][high].kind == BoundaryKind::symmetry) continue;
     const int first = box.cells()[d] - 1;
     if (d > 0 && (high ? place[d] >= first : place[d] <= 0)) std::fill(values + row.i_begin, values + row.i_end, 0.0);
     if (d > 0) continue;
@@ -200,10 +200,10 @@ LocalViscosity::LocalViscosity(const Box &box)
     : fields(box, viscosity_fields(box.dimension())),
       stress(box, static_cast<int>(tensor_components(box.dimension()).size())) {}
 
-PetscErrorCode compute_viscosity(const Box &box, const Fluid &fluid, const BoxSides &sides,
+PetscErrorCode compute_viscosity(const Box &box, const Fluid &fluid, const BoundaryConditions &sides,
                                  const std::vector<Phase> &phases, LocalViscosity *viscosity) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::viscous);
+  EventScope scope(Event::viscous);
   const int dim = box.dimension(), end = box.cells()[0] + 1;
   Field &fields = viscosity->fields;
   const Field fluidity = fields.part(0, 1), difference = viscosity->stress.part(0, 1);

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/boundaries.hpp"
 #include "field/material.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "flow/local_viscosity.hpp"
 #include "grid/active_segments.hpp"
 
@@ -29,7 +29,7 @@ struct ViscosityContrast {
   bool within(double factor) const { return most <= factor * fluid && fluid <= factor * least; }
   /// Whether the pressure may be extrapolated to the next step. Beyond the factor it would oscillate for a hundred
   /// steps and more (docs/method.md, section 16).
-  bool settles() const { return exists() && within(20); }
+  bool allows_pressure_extrapolation() const { return exists() && within(20); }
 };
 
 /// The variable viscosity for given phases.
@@ -49,7 +49,7 @@ struct LocalViscosity {
 /// Computes harmonic means, weighted by the solid fractions at centres and over four centres on edges, and the excess
 /// of arithmetic means along surfaces, which is 0 in cells beside boundaries other than planes of symmetry. Sets
 /// centres in one ghost layer and all edges of owned cells. phi needs two ghosts.
-PetscErrorCode compute_viscosity(const Box &box, const Fluid &fluid, const BoxSides &sides,
+PetscErrorCode compute_viscosity(const Box &box, const Fluid &fluid, const BoundaryConditions &sides,
                                  const std::vector<Phase> &phases, LocalViscosity *viscosity);
 
 }  // namespace eulastic

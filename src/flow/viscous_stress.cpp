@@ -14,7 +14,7 @@ EULASTIC_INLINE void add_force(const Box &box, const Field &viscosity, double sc
   const auto stress = stress_on_row<Dim>(box, viscosity, velocity, a, faces.j, faces.k);
   if (side != 0) {
     for (int i = faces.i_begin; i < faces.i_end; ++i)
-      out[i] = kernels::fma(scale, stress.force_on_side(i, side), out[i]);
+      out[i] = kernels::fma(scale, stress.force_on_open_boundary(i, side), out[i]);
     return;
   }
 #pragma omp simd
@@ -40,8 +40,8 @@ EULASTIC_CLONES void rotate_row(int n, double factor, const double *viscosity, c
 PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, double scale, const Field &velocity,
                                  Field &out) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::viscous);
-  find_tangential_stress(box, velocity, &viscosity);
+  EventScope scope(Event::viscous);
+  compute_tangential_stress(box, velocity, &viscosity);
   const auto add_on_row = [&](int a, const Segment &row) {
     for_faces(box, a, row, [&](const Segment &faces, int side) {
       double *sum = out[a].row(faces.j, faces.k);
@@ -61,10 +61,10 @@ PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, doub
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode rotate_pressure(const Box &box, const Field &viscosity, double factor, const Field &divergence,
-                               Field &pressure) {
+PetscErrorCode apply_rotational_update(const Box &box, const Field &viscosity, double factor, const Field &divergence,
+                                       Field &pressure) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::correction);
+  EventScope scope(Event::correction);
   in_row_parts(box, [&](const RowPart &owned) {
     const RowPart part = owned.with_ghosts(box);
     for (int k = part.k_begin; k < part.k_end; ++k)

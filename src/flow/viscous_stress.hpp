@@ -13,7 +13,7 @@ PetscErrorCode add_viscous_force(const Box &box, LocalViscosity &viscosity, doub
 
 /// Subtracts factor nu D* with the local nu from the pressure, also in one ghost layer: the rotational update with
 /// variable viscosity.
-PetscErrorCode rotate_pressure(const Box &box, const Field &viscosity, double factor, const Field &divergence,
-                               Field &pressure);
+PetscErrorCode apply_rotational_update(const Box &box, const Field &viscosity, double factor, const Field &divergence,
+                                       Field &pressure);
 
 }  // namespace eulastic

@@ -3,7 +3,7 @@
 
 namespace eulastic {
 
-Sides::Sides(const Box &box) : wraps_x(box.wraps_x()), cells_x(box.cells()[0]) {
+HaloOverlap::HaloOverlap(const Box &box) : wraps_x(box.wraps_x()), cells_x(box.cells()[0]) {
   for (int d = 0; d < 3; ++d) {
     wall[d][0] = box.touches_low(d);
     wall[d][1] = box.touches_high(d);
@@ -12,7 +12,7 @@ Sides::Sides(const Box &box) : wraps_x(box.wraps_x()), cells_x(box.cells()[0]) {
 }
 
 int StagePass::depth(const Box &box, const Split &split, int least, int most) {
-  const Sides sides(box);
+  const HaloOverlap sides(box);
   int depth = least;
   for (int more = least + 1; more <= std::min(most, box.layout().ghosts[0]); ++more) {
     double share = 1;

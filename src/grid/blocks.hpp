@@ -48,14 +48,14 @@ template <class Row>
 
 /// Layers of points around the owned ones that fused stages recompute instead of exchanging them. There are none behind
 /// boundaries, and none along an x that is not split, where rows are periodic by themselves.
-struct Sides {
+struct HaloOverlap {
   bool wraps_x;
   int cells_x;
   bool wall[3][2];     ///< the block touches this boundary of the domain
   bool unextended[3];  ///< no layers along this direction
   int beyond[3] = {};  ///< 1: stages also advance the faces on an open high boundary (normal velocity)
 
-  explicit Sides(const Box &box);
+  explicit HaloOverlap(const Box &box);
   /// Fills the first ghost at both ends of a row from its other end if x is periodic and not split. Stages of the same
   /// pass read it.
   [[gnu::always_inline]] void wrap(double *row) const noexcept {
@@ -79,7 +79,7 @@ class StagePass {
 public:
   /// `depth`: number of stages, applied to each of `fields` independent fields.
   /// `layers`: layers that the last stage computes, 0 or -1.
-  StagePass(const Box &box, const Sides &sides, int depth, int fields, int layers = 0)
+  StagePass(const Box &box, const HaloOverlap &sides, int depth, int fields, int layers = 0)
       : box_(box), sides_(sides), depth_(depth), fields_(fields), first_layers_(depth - 1 + layers) {}
 
   /// Returns the largest number of stages of a pass, from `least` to `most`, for which the ghost layers suffice and the
@@ -109,7 +109,7 @@ public:
   /// Calls rows(stage, first row, end of j) for all rows of a task, plane by plane and including layers. Always
   /// inlined, for routines with EULASTIC_CLONES.
   template <int Dim, class Rows>
-  [[gnu::always_inline]] void go(const Task &task, const Rows &rows) const {
+  [[gnu::always_inline]] void for_rows(const Task &task, const Rows &rows) const {
     constexpr int last = Dim - 1;
     const Int3 n = box_.cells();
     const auto row = [&](int s, int j, int slice) {
@@ -143,7 +143,7 @@ private:
   std::vector<Task> tasks_between(int team, int stage) const;
 
   const Box &box_;
-  const Sides &sides_;
+  const HaloOverlap &sides_;
   int depth_, fields_, first_layers_;  ///< first_layers_: layers that the first stage computes
 };
 

@@ -36,7 +36,7 @@ Box::Box(const DomainShape &domain, const Int3 &begin, const Int3 &cells, int gh
   if (layout_.size % 512 == 0) layout_.size += layout_.sy;
 }
 
-Box::Range Box::points_near(int d, bool staggered, int layers) const {
+Box::Range Box::points_with_ghosts(int d, bool staggered, int layers) const {
   const int ghosts = std::min(layers, layout_.ghosts[d]), begin = layout_.begin[d];
   const Range near{-ghosts, layout_.cells[d] + ghosts};
   if (!is_wall(d)) return near;
@@ -57,14 +57,14 @@ bool Box::any_open() const {
   return any;
 }
 
-std::vector<Segment> Box::faces_on(int d, bool high) const {
+std::vector<Segment> Box::boundary_faces(int d, bool high) const {
   Int3 begin{}, end = cells();
   begin[d] = high ? end[d] : 0;
   end[d] = begin[d] + 1;
   return touches(d, high) ? rows_between(begin, end) : std::vector<Segment>();
 }
 
-std::vector<Segment> Box::cells_at(int d, bool high, int layers) const {
+std::vector<Segment> Box::boundary_cells(int d, bool high, int layers) const {
   Int3 begin{}, end = cells();
   (high ? begin : end)[d] = high ? std::max(0, end[d] - layers) : std::min(layers, end[d]);
   return touches(d, high) ? rows_between(begin, end) : std::vector<Segment>();

@@ -13,7 +13,7 @@
 
 namespace eulastic {
 
-/// Whether a direction is periodic or has boundaries, of any kind (field/sides.hpp).
+/// Whether a direction is periodic or has boundaries, of any kind (field/boundaries.hpp).
 enum class Boundary : unsigned char { periodic, wall };
 
 using Int3 = std::array<int, 3>;
@@ -47,7 +47,7 @@ struct DomainShape {
 
   /// 2 or 3. A coarse level of the V-cycle with a single cell between open boundaries in z is three-dimensional.
   int dimension() const { return cells[2] == 1 && !open[2][0] && !open[2][1] ? 2 : 3; }
-  /// Whether direction d has boundaries, of any kind (field/sides.hpp), rather than being periodic.
+  /// Whether direction d has boundaries, of any kind (field/boundaries.hpp), rather than being periodic.
   bool is_wall(int d) const { return d < dimension() && boundary[d] == Boundary::wall; }
   double longest_spacing() const {
     double longest = 0;
@@ -86,7 +86,7 @@ public:
   double domain_cell_count() const { return double(domain_.cells[0]) * domain_.cells[1] * domain_.cells[2]; }
   int dimension() const { return domain_.dimension(); }
   Boundary boundary(int d) const { return domain_.boundary[d]; }
-  /// Whether direction d has boundaries, of any kind (field/sides.hpp), rather than being periodic.
+  /// Whether direction d has boundaries, of any kind (field/boundaries.hpp), rather than being periodic.
   bool is_wall(int d) const { return domain_.is_wall(d); }
   bool is_open(int d, bool high) const { return is_wall(d) && domain_.open[d][high]; }
   /// Whether the pressure is given on any boundary; otherwise it is determined up to a constant.
@@ -130,16 +130,16 @@ public:
   };
   /// Returns the local indices along d of the points of a field in the block and in `layers` of its ghosts (at most
   /// all), without ghosts behind boundaries.
-  Range points_near(int d, bool staggered, int layers) const;
+  Range points_with_ghosts(int d, bool staggered, int layers) const;
   /// Returns the faces on a boundary of the domain, none if the block does not touch it. The faces of a high boundary,
   /// index N, are not part of rows().
-  std::vector<Segment> faces_on(int d, bool high) const;
+  std::vector<Segment> boundary_faces(int d, bool high) const;
   /// Returns the faces on the high boundary of direction d if it is open, otherwise none.
   std::vector<Segment> open_high_faces(int d) const {
-    return is_open(d, true) ? faces_on(d, true) : std::vector<Segment>();
+    return is_open(d, true) ? boundary_faces(d, true) : std::vector<Segment>();
   }
   /// Returns the cells within `layers` of a boundary of the domain, none if the block does not touch it.
-  std::vector<Segment> cells_at(int d, bool high, int layers) const;
+  std::vector<Segment> boundary_cells(int d, bool high, int layers) const;
   /// Returns all rows of cells, without ghosts.
   std::vector<Segment> rows() const;
 

@@ -89,7 +89,7 @@ Int3 Domain::largest_box(const GridSpec &spec, const Int3 &ranks) {
   return most;
 }
 
-std::string Domain::why_not(const GridSpec &spec, int ranks) {
+std::string Domain::refusal_reason(const GridSpec &spec, int ranks) {
   for (int d = 0; d < (spec.cells[2] == 1 ? 2 : 3); ++d)
     if (spec.cells[d] < stencil_width)
       return "-grid_cells: " + std::to_string(spec.cells[d]) + " in " + "xyz"[d] +
@@ -131,7 +131,7 @@ PetscErrorCode Domain::create(MPI_Comm comm, const GridSpec &spec) {
   comm_ = comm;
   PetscCallMPI(MPI_Comm_rank(comm, &rank_));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  const std::string reason = why_not(spec, ranks);
+  const std::string reason = refusal_reason(spec, ranks);
   PetscCheck(reason.empty(), comm, PETSC_ERR_ARG_SIZ, "%s", reason.c_str());
   divide(spec, ranks);
   PetscCall(create_dm(true, DMDA_STENCIL_BOX, spec.ghosts, dm_.put()));

@@ -22,14 +22,14 @@ struct GridSpec : DomainShape {
 class Domain : public Box {
 public:
   /// Splits the cells among the ranks of `comm` and creates the DMDA. x is split only if `spec` requires it, if y and z
-  /// cannot take all ranks, or if whole rows would cause many more ghosts. Fails if why_not() returns an error.
+  /// cannot take all ranks, or if whole rows would cause many more ghosts. Fails if refusal_reason() returns an error.
   /// Collective.
   PetscErrorCode create(MPI_Comm comm, const GridSpec &spec);
   /// Returns the domain of the first of `ranks` ranks without DMDA and communicator, for estimates with any number of
-  /// ranks and cells. why_not() must return no error.
+  /// ranks and cells. refusal_reason() must return no error.
   static Domain planned(const GridSpec &spec, int ranks);
   /// Returns an error message of one line if `spec` cannot be split among `ranks` ranks, otherwise an empty string.
-  static std::string why_not(const GridSpec &spec, int ranks);
+  static std::string refusal_reason(const GridSpec &spec, int ranks);
   /// Returns the ranks per direction that create() would use; {0,0,0} if there is no valid decomposition.
   static Int3 decompose(const GridSpec &spec, int ranks);
   /// Returns the largest number of cells of a rank along each direction.

@@ -61,15 +61,15 @@ void add(const Span &more, Span *sum) {
 PetscErrorCode OccupiedRows::find(const Domain &domain, ConstView value) {
   PetscFunctionBeginUser;
   *this = {};
-  PetscCall(follow(domain, {{this, value}}));
+  PetscCall(update(domain, {{this, value}}));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OccupiedRows::follow(const Domain &domain, const std::vector<Moved> &moved) {
+PetscErrorCode OccupiedRows::update(const Domain &domain, const std::vector<Transported> &moved) {
   PetscFunctionBeginUser;
   if (moved.empty()) PetscFunctionReturn(0);
   std::vector<int> all_inside;  // one flag for each field
-  for (const Moved &one : moved) {
+  for (const Transported &one : moved) {
     const OccupiedRows before = std::move(*one.rows);
     one.rows->read(domain, one.value, before, {domain.layout().ghosts[0] + beyond_ghosts, false});
     all_inside.push_back(one.rows->inside_);
@@ -82,10 +82,10 @@ PetscErrorCode OccupiedRows::follow(const Domain &domain, const std::vector<Move
 
 void OccupiedRows::find_in_box(const Box &box, ConstView value, int reach) {
   *this = {};
-  follow_in_box(box, value, reach);
+  update_in_box(box, value, reach);
 }
 
-void OccupiedRows::follow_in_box(const Box &box, ConstView value, int reach) {
+void OccupiedRows::update_in_box(const Box &box, ConstView value, int reach) {
   const OccupiedRows before = std::move(*this);
   read(box, value, before, {reach, true});
 }

@@ -32,14 +32,14 @@ public:
   /// have spans, too, and spans extend `reach` cells beyond nonzero values. Not collective.
   void find_in_box(const Box &box, ConstView value, int reach);
   /// Updates the spans of find_in_box() after a transport by less than a cell.
-  void follow_in_box(const Box &box, ConstView value, int reach);
-  struct Moved {
+  void update_in_box(const Box &box, ConstView value, int reach);
+  struct Transported {
     OccupiedRows *rows;
     ConstView value;  ///< the field of these rows
   };
   /// Updates the spans of several fields after a transport by less than a cell, with one reduction. Cells outside the
   /// old spans are zero and are not read; ghost rows are read only if inside() is false. Collective.
-  static PetscErrorCode follow(const Domain &domain, const std::vector<Moved> &moved);
+  static PetscErrorCode update(const Domain &domain, const std::vector<Transported> &moved);
 
   /// Extends the spans to contain those of another field on the same grid.
   void join(const OccupiedRows &other);

@@ -12,19 +12,19 @@ namespace eulastic {
 
 /// Sets the number of threads per rank, at least 1. Pages of fields that are created afterwards are placed near the
 /// thread that works on them.
-inline void set_threads(int count) { ThreadTeam::of_rank().resize(count); }
-inline int threads() noexcept { return ThreadTeam::of_rank().size(); }
+inline void set_threads(int count) { ThreadTeam::team_of_rank().resize(count); }
+inline int threads() noexcept { return ThreadTeam::team_of_rank().size(); }
 
 /// Calls work(n) for every 0 <= n < count. Thread t of `team` threads (at most those of the rank) takes n = t, t + team
 /// ..., so that it always works on the same planes. Within a parallel region the calling thread does all the work.
 template <class Work>
 void in_parallel(int team, int count, const Work &work) {
   team = std::min(team, count);
-  if (team <= 1 || ThreadTeam::is_in_region()) {
+  if (team <= 1 || ThreadTeam::is_in_parallel_region()) {
     for (int n = 0; n < count; ++n) work(n);
     return;
   }
-  ThreadTeam::of_rank().run(team, [&](int thread) {
+  ThreadTeam::team_of_rank().run(team, [&](int thread) {
     for (int n = thread; n < count; n += team) work(n);
   });
 }
@@ -32,7 +32,7 @@ void in_parallel(int team, int count, const Work &work) {
 /// Calls work(n) for every 0 <= n < count, each on a single thread; a free thread takes the next n. Returns the flops
 /// of the routines that were called.
 template <class Work>
-double in_team(int count, const Work &work) {
+double in_parallel_tasks(int count, const Work &work) {
   std::vector<double> flops(threads(), 0.0);
   std::atomic<int> next{0};
   in_parallel(threads(), threads(), [&](int thread) {
@@ -71,7 +71,7 @@ void in_row_parts(const Box &box, const Work &work) {
 
 /// Calls work(begin, end) for all parts of `segments`, in parallel; begin and end are pointers.
 template <class Work>
-void in_parts_of(const std::vector<Segment> &segments, const Box &box, const Work &work) {
+void in_segment_parts(const std::vector<Segment> &segments, const Box &box, const Work &work) {
   const int parts = row_parts(box);
   in_parallel(parts, parts, [&](int part) {
     const Piece piece(segments.size(), part, parts);

@@ -176,7 +176,7 @@ bool BodiesFile::write_block(hid_t file, int begin, int end, const std::vector<d
 PetscErrorCode BodiesFile::write_waiting() {
   PetscFunctionBeginUser;
   if (times_.empty()) PetscFunctionReturn(0);
-  VerbScope scope(Verb::write);
+  EventScope scope(Event::write);
   const hsize_t rows = times_.size(), bodies = known_.bodies;
   const std::string target = temporary_name(path_);
   std::error_code error;

@@ -67,7 +67,7 @@ PetscErrorCode write_checkpoint(const Domain &domain, const std::string &path, c
                                 const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields,
                                 const std::vector<CheckpointRecords> &records) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::write);
+  EventScope scope(Event::write);
   Hdf5File file;
   PetscCall(file.create(domain.comm(), path));
   PetscCall(file.write_attribute("/", "kind", std::string(kind)));

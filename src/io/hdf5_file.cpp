@@ -185,7 +185,7 @@ PetscErrorCode Hdf5File::read_array(const std::string &name, std::vector<hsize_t
   const bool read =
       H5Dread(dataset.get(), hdf5_type<T>(), space.get(), space.get(), transfer.get(), values->data()) >= 0;
   PetscCall(check(read, "cannot read dataset " + name));
-  PetscCallMPI(share_bytes(values->data(), count * sizeof(T), comm_));
+  PetscCallMPI(broadcast_bytes(values->data(), count * sizeof(T), comm_));
   PetscCall(verify(name, checksum(values->data(), count, 0)));
   PetscFunctionReturn(0);
 }
@@ -416,7 +416,7 @@ PetscErrorCode Hdf5File::read_field_as(const std::string &name, hid_t dataset, c
   const T *value = values.data();
   for (int k = 0; k < int(slab.count[0]); ++k)
     for (int j = 0; j < int(slab.count[1]); ++j, value += slab.count[2])
-      for (int i = 0; i < int(slab.count[2]); ++i) {  // what is equal is not written: Field::at_rest
+      for (int i = 0; i < int(slab.count[2]); ++i) {  // what is equal is not written: Field::on_demand
         const double found = static_cast<double>(value[i]);
         if (std::memcmp(&found, &field(i, j, k), sizeof found) != 0) field(i, j, k) = found;
       }

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "io/hdf5_handle.hpp"
 
 #include <cstdint>

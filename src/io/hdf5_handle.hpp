@@ -49,6 +49,7 @@ private:
 
 using Hdf5FileHandle = Hdf5Handle<H5Fclose>;
 using Hdf5Dataset = Hdf5Handle<H5Dclose>;
+using Hdf5Object = Hdf5Handle<H5Oclose>;
 using Hdf5Space = Hdf5Handle<H5Sclose>;
 using Hdf5Type = Hdf5Handle<H5Tclose>;
 using Hdf5Attribute = Hdf5Handle<H5Aclose>;

@@ -194,7 +194,7 @@ std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
   text.resize(static_cast<std::size_t>(stream.gcount()));
   const bool all = text.size() < longest;
   header->data = -1;
-  for (std::size_t begin = mark_length(text); begin < text.size();) {
+  for (std::size_t begin = byte_order_mark_length(text); begin < text.size();) {
     std::size_t end = text.find('\n', begin);
     if (end == std::string::npos) {
       if (!all || !is_detached(fields)) break;

@@ -131,7 +131,7 @@ PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
 
 PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<SnapshotField> &fields) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::write);
+  EventScope scope(Event::write);
   const std::string name = file_name(count_);
   const Real3 &h = domain_->spacing(), &length = domain_->domain_shape().length;
   Hdf5File file;

@@ -156,7 +156,7 @@ bool begins_as_text(std::ifstream &stream, std::uintmax_t size) {
   stream.seekg(0);
   stream.read(bytes, header_bytes);
   std::string text(bytes, static_cast<std::size_t>(stream.gcount()));
-  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n", mark_length(text)), text.size());
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n", byte_order_mark_length(text)), text.size());
   text = lower_case(text);
   stream.clear();
   stream.seekg(static_cast<std::streamoff>(begin));

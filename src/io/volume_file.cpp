@@ -34,7 +34,7 @@ std::string find_volume(const std::string &path, VolumeFormat *format, std::stri
   const std::string suffix = lower_case(fs::path(*file).extension().string());
   if (is_hdf5(*file))
     *format = VolumeFormat::hdf5;
-  else if (std::strncmp(magic + mark_length(magic), "NRRD000", 7) == 0)
+  else if (std::strncmp(magic + byte_order_mark_length(magic), "NRRD000", 7) == 0)
     *format = VolumeFormat::nrrd;
   else if (is_stl(*file) || suffix == ".stl")  // the reader says what is wrong with a damaged one
     *format = VolumeFormat::stl;

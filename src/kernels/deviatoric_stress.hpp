@@ -39,7 +39,7 @@ struct DeviatoricStress {
   }
   /// Returns the force on a face of an open boundary (side = -1: low, 1: high) with even ghosts: the Laplacian, because
   /// div v = 0 on both sides of the boundary, which even ghosts do not satisfy (docs/method.md, section 20).
-  EULASTIC_BODY double force_on_side(std::ptrdiff_t i, int side) const noexcept {
+  EULASTIC_BODY double force_on_open_boundary(std::ptrdiff_t i, int side) const noexcept {
     if constexpr (Dim == 2) return force(i);
     const std::ptrdiff_t inside = side > 0 ? i - a : i;
     return fma(side * (2. / 3) * ia * ia * centre[inside], va[inside + a] - va[inside], force(i));

@@ -11,7 +11,7 @@
 namespace eulastic::kernels {
 
 /// Calls add(offset, div(sigma)_a) for all points; b and c are the other directions. `viscosity` is SameViscosity or
-/// OwnViscosity.
+/// SolidViscosity.
 template <int Dim, class Law, class Viscosity, class Points, class Add>
 EULASTIC_INLINE void elastic_force(const Points &points, ConstView phi, const double *const *B,
                                    const std::ptrdiff_t *stride, const double *inverse_spacing, int a, const Law &law,

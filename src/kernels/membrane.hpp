@@ -53,8 +53,8 @@ EULASTIC_INLINE Tensor<Dim> project(const Tensor<Dim> &B, const Vector<Dim> &n) 
 /// Rotates tangential tensors by the smallest rotation of their normals into n, and multiplies them by share[m], m <
 /// count. B[field][m] are the components of the tensors, from[d][m] their normals.
 template <int Dim, int Most>
-EULASTIC_INLINE void turn(const Vector<Dim> &n, int count, const double *share, const double (*from)[Most],
-                          double (*B)[Most]) noexcept {
+EULASTIC_INLINE void rotate_tensors(const Vector<Dim> &n, int count, const double *share, const double (*from)[Most],
+                                    double (*B)[Most]) noexcept {
   alignas(64) double Bn[Dim][Most], w[Dim][Most], nBn[Most];
 #pragma omp simd
   for (int m = 0; m < count; ++m) {
@@ -88,7 +88,7 @@ EULASTIC_INLINE void turn(const Vector<Dim> &n, int count, const double *share, 
 /// Returns F P_0 F^T of a surface with the normal n in a body with B = F F^T, where P_0 is the projection of the
 /// surface before F: B - Bn (Bn)^T/(n.Bn). The result is exactly P where B = 1.
 template <int Dim>
-EULASTIC_INLINE Tensor<Dim> surface_part(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
+EULASTIC_INLINE Tensor<Dim> surface_tensor(const Tensor<Dim> &B, const Vector<Dim> &n) noexcept {
   Vector<Dim> Bn{};
   double nBn = 0;
   bool undeformed = true;
@@ -124,7 +124,7 @@ EULASTIC_INLINE SurfaceStrain surface_strain(const Tensor<Dim> &B) noexcept {
 /// moved towards their mean, which is raised if necessary, until the area squared is `least`. Returns whether the
 /// strain was changed.
 template <int Dim>
-EULASTIC_INLINE bool keep_area(const Vector<Dim> &n, double least, Tensor<Dim> *B) noexcept {
+EULASTIC_INLINE bool bound_area(const Vector<Dim> &n, double least, Tensor<Dim> *B) noexcept {
   constexpr int values = Dim - 1;
   double square = 0;
   for (int a = 0; a < Dim; ++a)

@@ -18,7 +18,8 @@ struct LineCoefficients {
 
 inline constexpr double line_laplacian_flops_per_direction = 6;
 
-/// Returns the sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]), less shift q[0], at cell i of the row q.
+/// Returns the sum over directions of low (q[-1] - q[0]) + high (q[+1] - q[0]), less shift q[0], at cell i of the row
+/// q.
 template <int Dim>
 EULASTIC_INLINE double line_laplacian(const double *q, int i, std::ptrdiff_t sy, std::ptrdiff_t sz,
                                       const LineCoefficients &c) noexcept {
@@ -70,15 +71,15 @@ EULASTIC_INLINE void relax(const Segment &s, ConstView q, ConstView r, LineCoeff
 }
 
 /// Restricts pairs of fine values to coarse values: coarse[i] = low[i] fine[2i] + high[i] fine[2i + 1].
-EULASTIC_INLINE void join_pairs(int n, const double *fine, const double *low, const double *high,
-                                double *coarse) noexcept {
+EULASTIC_INLINE void restrict_pairs(int n, const double *fine, const double *low, const double *high,
+                                    double *coarse) noexcept {
 #pragma omp simd
   for (int i = 0; i < n; ++i) coarse[i] = fma(low[i], fine[2 * i], high[i] * fine[2 * i + 1]);
 }
 
 /// Rows of coarse cells around a row of fine cells: the row that contains it, its neighbour in y, and the same two rows
 /// in the neighbouring plane in z. y and z are the weights of the neighbours.
-struct Corners {
+struct CoarseRows {
   const double *row[4];
   double y, z;
 
@@ -90,15 +91,15 @@ struct Corners {
 };
 
 /// Computes out = factor r + the interpolated coarse values, for directions x that are not coarsened.
-EULASTIC_INLINE void add_interpolated(int begin, int end, Corners coarse, double factor, const double *r,
+EULASTIC_INLINE void add_interpolated(int begin, int end, CoarseRows coarse, double factor, const double *r,
                                       double *out) noexcept {
 #pragma omp simd
   for (int i = begin; i < end; ++i) out[i] = fma(factor, r[i], coarse.at(i));
 }
 
 /// The same where x is coarsened by two; low and high are the weights of the neighbours in x.
-EULASTIC_INLINE void add_interpolated_pairs(int begin, int end, Corners coarse, const double *low, const double *high,
-                                            double factor, const double *r, double *out) noexcept {
+EULASTIC_INLINE void add_interpolated_pairs(int begin, int end, CoarseRows coarse, const double *low,
+                                            const double *high, double factor, const double *r, double *out) noexcept {
 #pragma omp simd
   for (int i = begin; i < end; ++i) {
     const double own = coarse.at(i);

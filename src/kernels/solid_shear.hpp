@@ -87,7 +87,7 @@ struct SameViscosity {
 };
 
 /// The solid has a viscosity of its own; `excess` = mu_s/mu_f - 1.
-struct OwnViscosity {
+struct SolidViscosity {
   double excess;
 
   template <int Dim>

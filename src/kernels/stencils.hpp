@@ -39,8 +39,8 @@ EULASTIC_INLINE double sum_around(const double *q, const std::ptrdiff_t *s) noex
 /// `out`. Along each direction in which the positions differ the two neighbours are averaged: towards +d from faces to
 /// points that are not staggered in d, towards -e from centres to points that are staggered in e.
 template <class Points>
-EULASTIC_INLINE void carry_velocity(const Points &points, ConstView face, int d, const bool *at, int dimension,
-                                    double *out) noexcept {
+EULASTIC_INLINE void average_velocity(const Points &points, ConstView face, int d, const bool *at, int dimension,
+                                      double *out) noexcept {
   const double *q = face.origin;
   std::ptrdiff_t step[3] = {};
   int steps = 0;

@@ -13,7 +13,7 @@ struct SurfacePoints {
   static constexpr int most = 128, lanes = 8;
   alignas(64) double u[most], v[most], weight[most], value[Values][most];
   int count = 0;
-  void fill_up() noexcept {
+  void pad_to_lanes() noexcept {
     for (; count % lanes != 0; ++count) {
       u[count] = v[count] = weight[count] = 0;
       for (auto &one : value) one[count] = 0;
@@ -64,7 +64,8 @@ EULASTIC_INLINE void solve_column(const double (&L)[N][N], int q, double (&x)[N]
   }
 }
 
-/// Fits points after fill_up(). Returns false, with unusable coefficients, where the points do not determine the fit.
+/// Fits points after pad_to_lanes(). Returns false, with unusable coefficients, where the points do not determine the
+/// fit.
 template <int Dim, int Values>
 EULASTIC_INLINE bool fit_surface(const SurfacePoints<Values> &p, SurfaceFit<Dim, Values> *fit) noexcept {
   using Fit = SurfaceFit<Dim, Values>;

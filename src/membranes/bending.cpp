@@ -1,6 +1,6 @@
 #include "membranes/bending.hpp"
 
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/bending.hpp"

@@ -11,7 +11,7 @@ class MembraneBending {
 public:
   static constexpr int work_fields = 6;
 
-  explicit MembraneBending(const PhasePlace &place) : place_(place) {}
+  explicit MembraneBending(const PhaseDomain &place) : place_(place) {}
   /// Computes curvature and force of a phase in `fields` (work_fields components). `smooth`: smoothed phi of
   /// SurfaceCells with valid ghosts, 0 around the rows of the phase. Collective on the grid.
   PetscErrorCode find(const Phase &phase, ConstView smooth, Field &fields);
@@ -43,7 +43,7 @@ private:
 
   PetscErrorCode smooth_force(const Phase &phase, Field &fields);
 
-  PhasePlace place_;
+  PhaseDomain place_;
   std::vector<Cell> cells_;  ///< cells with a curvature
 };
 

@@ -1,7 +1,7 @@
 #include "membranes/membrane.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/weno5.hpp"
@@ -122,7 +122,7 @@ PetscErrorCode MembraneMechanics::start(Phase *phase) {
     if (!cell.owned) continue;
     const auto set = [&](auto dim) {
       Tensor<dim> value =
-          kernels::surface_part<dim>(tensor_at<dim>(phase->tensor.field, cell.at), normal_of<dim>(cell.normal));
+          kernels::surface_tensor<dim>(tensor_at<dim>(phase->tensor.field, cell.at), normal_of<dim>(cell.normal));
       for (auto &row : value)
         for (double &entry : row) entry *= stretch;
       set_tensor<dim>(phase->tensor.field, cell.at, value);
@@ -158,14 +158,14 @@ PetscErrorCode MembraneMechanics::heun(double dt, const Field &velocity, Phase *
       for (int a = 0; a < Dim; ++a)
         for (int b = 0; b < Dim; ++b) value[a][b] = 0.5 * (old[a][b] + value[a][b]);
       value = kernels::project_surface<Dim>(value, n);
-      *lost_count += kernels::keep_area<Dim>(n, least, &value);
+      *lost_count += kernels::bound_area<Dim>(n, least, &value);
     }
     set_tensor<Dim>(second ? tensor : next, cell.at, value);
   };
   const int parts = row_parts(*place_.box);
   for (const bool second : {false, true}) {
     {
-      VerbScope scope(Verb::membrane);
+      EventScope scope(Event::membrane);
       in_parallel(parts, parts, [&](int part) {
         const Piece piece(surface_.nearest_count(), part, parts);
         for (std::size_t c = piece.begin; c < piece.end; ++c) stage(second, c, &lost_cells[part]);
@@ -215,7 +215,7 @@ void MembraneMechanics::relax_to_markers(const std::vector<SurfaceMarkers::Strai
         B = kernels::fma(share, strain.B[f] - B, B);
       }
       Tensor<dim> value = tensor_at<dim>(tensor, cell.at);
-      if (!kernels::keep_area<dim>(normal_of<dim>(cell.normal), least, &value)) continue;
+      if (!kernels::bound_area<dim>(normal_of<dim>(cell.normal), least, &value)) continue;
       ++*unresolved;
       set_tensor<dim>(tensor, cell.at, value);
     }
@@ -284,7 +284,7 @@ constexpr int force_reach = 2;
 // Computes delta tau at centres, with the ghosts that the force reads; 0 elsewhere in rows that the force reaches.
 PetscErrorCode MembraneMechanics::find_stress(const Phase &phase, Field &stress) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::membrane);
+  EventScope scope(Event::membrane);
   const int dim = place_.box->dimension();
   for (int f = 0; f < stress.count(); ++f) clear_near_rows(*place_.box, phase.rows, force_reach, stress[f]);
   const auto set = [&](const SurfaceCells::Cell &cell, auto zero, auto P) {
@@ -327,7 +327,7 @@ PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const Force
       PetscCall(bending_.find(phase, smooth(), fields));
     else
       PetscCall(find_stress(phase, fields));
-    VerbScope scope(Verb::membrane);
+    EventScope scope(Event::membrane);
     in_row_parts(*place_.box, [&](const RowPart &part) {
       RowScratch scratch(*place_.box, 1);
       double *force = scratch.row(0);
@@ -404,7 +404,7 @@ PetscErrorCode MembraneMechanics::measure(const Phase &phase, const Field &veloc
         (*sum)[part].add_row(power, force, n, first);
       },
       &bending));
-  VerbScope scope(Verb::sums);
+  EventScope scope(Event::sums);
   film.add_energy(phase, velocity, power, stored, &sum->front());
   for (std::size_t c = 0; c < bending.size(); ++c)
     if (bending[c] > 0) bending[c] *= smoothed_delta(box, smooth(), surface_.all()[c].at);

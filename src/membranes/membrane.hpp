@@ -25,7 +25,7 @@ public:
   static constexpr int reach = around_membranes.reach;
 
   /// The objects in `place` must outlive this.
-  explicit MembraneMechanics(const PhasePlace &place) : place_(place), surface_(place), bending_(place) {}
+  explicit MembraneMechanics(const PhaseDomain &place) : place_(place), surface_(place), bending_(place) {}
 
   /// Finds the surface of a phase from phi with five ghosts. All later calls refer to this phase and use `work`,
   /// work_fields components, until the next find(). Collective on the grid, like all functions below.
@@ -66,7 +66,7 @@ private:
   static double least_area_squared(const Phase &phase);
   ConstView smooth() const { return surface_fields_[SurfaceCells::smoothed]; }
 
-  PhasePlace place_;
+  PhaseDomain place_;
   SurfaceCells surface_;
   MembraneBending bending_;
   Field surface_fields_, scratch_fields_;  ///< parts of the fields in `work`

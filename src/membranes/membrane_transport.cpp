@@ -27,7 +27,7 @@ bool MembraneTransport::has_any_markers() const {
 
 PetscErrorCode MembraneTransport::find(const Phase &phase, WorkSpace::Lease *work) {
   PetscFunctionBeginUser;
-  PetscCall(flow_.work.take("membrane", fields, work));
+  PetscCall(flow_.work.lease("membrane", fields, work));
   PetscCall(membrane_.find(phase, work->fields()));
   PetscFunctionReturn(0);
 }
@@ -37,7 +37,7 @@ PetscErrorCode MembraneTransport::find_walls(const std::vector<const Phase *> &r
   PetscFunctionBeginUser;
   for (const Phase *phase : rigid) fractions.push_back(phase->fraction[0]);
   WorkSpace::Lease scratch;
-  PetscCall(flow_.work.take("walls beside membranes", WallFilm::work_fields, &scratch));
+  PetscCall(flow_.work.lease("walls beside membranes", WallFilm::work_fields, &scratch));
   film_.find(flow_.domain, flow_.spec.sides, fractions, scratch.fields());
   PetscFunctionReturn(0);
 }
@@ -60,11 +60,11 @@ PetscErrorCode MembraneTransport::start() {
 
 PetscErrorCode MembraneTransport::resume() {
   PetscFunctionBeginUser;
-  for (Phase &phase : flow_.now.phases) PetscCall(settle(&phase));
+  for (Phase &phase : flow_.now.phases) PetscCall(rebuild_derived_fields(&phase));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::settle(Phase *phase) {
+PetscErrorCode MembraneTransport::rebuild_derived_fields(Phase *phase) {
   PetscFunctionBeginUser;
   if (!is_on_grid(*phase)) PetscFunctionReturn(0);
   force_known_ = false;
@@ -92,7 +92,8 @@ PetscErrorCode MembraneTransport::move(double dt, std::vector<Phase> *phases) {
     std::vector<SurfaceMarkers::Strain> strains;
     if (marked) markers_.find_strain(membrane_.surface(), static_cast<int>(p), &strains);
     PetscCall(membrane_.move(dt, now.velocity, strains, &phase, &unresolved));
-    if (marked) markers_.settle(membrane_.surface(), membrane_.surface_fields(), static_cast<int>(p), &now.markers);
+    if (marked)
+      markers_.pull_to_surface(membrane_.surface(), membrane_.surface_fields(), static_cast<int>(p), &now.markers);
     if (of_state) PetscCall(add_phase_force(phase, &net));
   }
   if (!of_state) PetscFunctionReturn(0);
@@ -130,9 +131,9 @@ PetscErrorCode MembraneTransport::place_markers(const Phase &phase, int number, 
 }
 
 // Assigns each marker to the present phase of its body and removes those of bodies that have left.
-PetscErrorCode MembraneTransport::follow() {
+PetscErrorCode MembraneTransport::update_after_labels() {
   std::vector<Phase> &phases = flow_.now.phases;
-  std::vector<WantedGhosts> labels;
+  std::vector<GhostUpdate> labels;
   PetscFunctionBeginUser;
   if (!has_any_markers()) PetscFunctionReturn(0);
   for (Phase &phase : phases)
@@ -171,7 +172,7 @@ PetscErrorCode MembraneTransport::add_phase_force(const Phase &phase, NetForce *
 
 PetscErrorCode MembraneTransport::finish_force(NetForce *net) {
   PetscFunctionBeginUser;
-  PetscCall(net->find_mean(&net_force_));
+  PetscCall(net->compute_mean(&net_force_));
   force_known_ = true;
   PetscFunctionReturn(0);
 }
@@ -215,11 +216,11 @@ PetscErrorCode MembraneTransport::add_force(const std::vector<Phase> &phases, do
       }
   });
   const Real3 &mean = net_force_;
-  if (balanced) take_off_mean(flow_.domain, {scale * mean[0], scale * mean[1], scale * mean[2]}, force);
+  if (balanced) subtract_mean(flow_.domain, {scale * mean[0], scale * mean[1], scale * mean[2]}, force);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MembraneTransport::add_surface_energy(const FlowLook &bodies, SurfaceEnergy *measured,
+PetscErrorCode MembraneTransport::add_surface_energy(const SynchronisedBodies &bodies, SurfaceEnergy *measured,
                                                      std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
   const double volume = flow_.domain.cell_volume();

@@ -15,23 +15,23 @@ public:
 
   explicit MembraneTransport(Flow *flow)
       : flow_(*flow),
-        membrane_(flow->place_of_phases()),
+        membrane_(flow->phase_domain()),
         markers_(flow->domain),
         force_(flow->domain, flow->domain.dimension()) {}
   PetscErrorCode start() override;
   PetscErrorCode resume() override;
-  PetscErrorCode settle(Phase *phase) override;
+  PetscErrorCode rebuild_derived_fields(Phase *phase) override;
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   /// Moves B_s, after phi has moved, and fills its layers and ghosts. For the state it also moves the markers and
   /// computes the force of add_force().
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  PetscErrorCode follow() override;
-  PetscErrorCode see_new_body(const Phase &phase, int number, int label) override {
+  PetscErrorCode update_after_labels() override;
+  PetscErrorCode observe_new_body(const Phase &phase, int number, int label) override {
     return place_markers(phase, number, label);
   }
-  PetscErrorCode see_bodies_leave() override { return follow(); }
-  PetscErrorCode add_surface_energy(const FlowLook &bodies, SurfaceEnergy *measured,
+  PetscErrorCode observe_removed_bodies() override { return update_after_labels(); }
+  PetscErrorCode add_surface_energy(const SynchronisedBodies &bodies, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
   /// Whether any phase on the grid is a membrane.
   static bool exists(const std::vector<Phase> &phases);

@@ -109,7 +109,7 @@ PetscErrorCode StretchForces::add(const std::vector<WeightedTarget> &targets) {
   WorkSpace::Lease lease;
   PetscFunctionBeginUser;
   PetscCall(find(phases));
-  PetscCall(flow_.work.take("stretch force", 1, &lease));
+  PetscCall(flow_.work.lease("stretch force", 1, &lease));
   Field &scratch = lease.fields();
   scratch.fill(0, 0);
   const View force = scratch[0];
@@ -126,7 +126,7 @@ PetscErrorCode StretchForces::add(const std::vector<WeightedTarget> &targets) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StretchForces::add_power(const FlowLook &bodies, double *power) {
+PetscErrorCode StretchForces::add_power(const SynchronisedBodies &bodies, double *power) {
   double total = 0;
   PetscFunctionBeginUser;
   PetscCall(find(bodies.phases));

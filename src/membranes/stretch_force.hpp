@@ -34,7 +34,7 @@ public:
   static constexpr int fields = 1;  ///< components of the work space that each call uses
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  PetscErrorCode add_power(const FlowLook &bodies, double *power) override;
+  PetscErrorCode add_power(const SynchronisedBodies &bodies, double *power) override;
   /// Whether bodies of any phase on the grid are stretched.
   static bool exist(const std::vector<Phase> &phases);
 

@@ -1,7 +1,7 @@
 #include "membranes/surface_cells.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/bending.hpp"
@@ -131,7 +131,7 @@ double SurfaceCells::width(const Real3 &normal) const {
 // both ends of a body.
 Box::Range SurfaceCells::near_box(const Phase &phase, int d, int ghosts) const {
   const bool alone = phase.rows.inside() && !(d == 0 && place_.box->wraps_x());
-  return place_.box->points_near(d, false, d < place_.box->dimension() && !alone ? ghosts : 0);
+  return place_.box->points_with_ghosts(d, false, d < place_.box->dimension() && !alone ? ghosts : 0);
 }
 
 // Whether the first filter reads behind a solid boundary. Ghost cells are checked as well, so that all ranks
@@ -228,7 +228,7 @@ void SurfaceCells::find_nearest(const Phase &phase, ConstView levels) {
 
 PetscErrorCode SurfaceCells::find(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::membrane);
+  EventScope scope(Event::membrane);
   PetscCall(find_level(phase, fields));
   find_nearest(phase, fields[level]);
   const auto measure_from = [&](std::size_t first) {
@@ -449,7 +449,7 @@ EULASTIC_INLINE void fill_point(const Source &source, const Neighbourhood<Dim> &
     for (int d = 0; d < Dim; ++d) normals[d][m] = 0;
     for (int f = 0; f < fields; ++f) tensors[f][m] = 0;
   }
-  kernels::turn<Dim>(normal_of<Dim>(cell.normal), whole, share, normals, tensors);
+  kernels::rotate_tensors<Dim>(normal_of<Dim>(cell.normal), whole, share, normals, tensors);
   alignas(64) double values[count][width];
   for (int m = 0; m < count; ++m)
     for (int f = 0; f < width; ++f) values[m][f] = 0;
@@ -480,7 +480,7 @@ PetscErrorCode SurfaceCells::exchange(const Phase &phase, Field &tensor, int wid
 PetscErrorCode SurfaceCells::extend(const Phase &phase, Field &tensor) const {
   PetscFunctionBeginUser;
   PetscCall(exchange(phase, tensor, layers + 1));
-  VerbScope scope(Verb::membrane);
+  EventScope scope(Event::membrane);
   const Layout &layout = place_.box->layout();
   const Neighbourhood<2> flat(layout);
   const Neighbourhood<3> around(layout);

@@ -23,7 +23,7 @@ public:
   };
 
   /// The objects in `place` must outlive this.
-  explicit SurfaceCells(const PhasePlace &place) : place_(place) {}
+  explicit SurfaceCells(const PhaseDomain &place) : place_(place) {}
   /// Components of `fields` after find(), ghosts included: smoothed phi, which is 0 within two cells around the rows of
   /// the phase; levels of the surface; and two step functions across it, whose slopes are delta and spread.
   static constexpr int work_fields = 4;
@@ -55,7 +55,7 @@ private:
   double width(const Real3 &normal) const;
   PetscErrorCode exchange(const Phase &phase, Field &tensor, int width) const;
 
-  PhasePlace place_;
+  PhaseDomain place_;
   std::vector<Cell> cells_;
   std::array<std::size_t, layers + 2> first_{};  ///< of every layer
   std::vector<int> number_;                      ///< number of the cell at an offset from the start of memory, -1: none

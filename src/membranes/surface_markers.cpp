@@ -1,7 +1,7 @@
 #include "membranes/surface_markers.hpp"
 
-#include "base/deliver.hpp"
 #include "base/events.hpp"
+#include "base/send_to_ranks.hpp"
 #include "grid/threads.hpp"
 #include "kernels/surface_fit.hpp"
 #include "membranes/membrane_tensor.hpp"
@@ -129,7 +129,7 @@ void SurfaceMarkers::place(const SurfaceCells &surface, const Field &fields, con
 PetscErrorCode SurfaceMarkers::move(double dt, const Field &velocity, std::vector<SurfaceMarker> *markers) {
   PetscFunctionBeginUser;
   {
-    VerbScope scope(Verb::membrane);
+    EventScope scope(Event::membrane);
     const int parts = row_parts(*box_);
     in_parallel(parts, parts, [&](int part) {
       const Piece piece(markers->size(), part, parts);
@@ -151,7 +151,7 @@ PetscErrorCode SurfaceMarkers::send_to_owners(std::vector<SurfaceMarker> *marker
   PetscFunctionBeginUser;
   for (const SurfaceMarker &marker : *markers)
     owners.push_back(domain_->owner(marker.cell[0], marker.cell[1], marker.cell[2]));
-  PetscCall(deliver(domain_->comm(), owners, markers));
+  PetscCall(send_to_ranks(domain_->comm(), owners, markers));
   PetscFunctionReturn(0);
 }
 
@@ -186,15 +186,15 @@ PetscErrorCode SurfaceMarkers::exchange(std::vector<SurfaceMarker> *markers) {
       all_.push_back(marker);
     }
   }
-  PetscCall(deliver(domain_->comm(), ranks, &all_));
+  PetscCall(send_to_ranks(domain_->comm(), ranks, &all_));
   markers->clear();
   for (const SurfaceMarker &marker : all_)
     if (domain_->owner(marker.cell[0], marker.cell[1], marker.cell[2]) == domain_->rank()) markers->push_back(marker);
   PetscFunctionReturn(0);
 }
 
-void SurfaceMarkers::settle(const SurfaceCells &surface, const Field &fields, int phase,
-                            std::vector<SurfaceMarker> *markers) const {
+void SurfaceMarkers::pull_to_surface(const SurfaceCells &surface, const Field &fields, int phase,
+                                     std::vector<SurfaceMarker> *markers) const {
   const auto is_far = [&](SurfaceMarker &marker) {
     return marker.phase == phase && !approach(surface, fields, pull_share, &marker);
   };
@@ -318,7 +318,7 @@ EULASTIC_INLINE bool strain_around(const Box &box, const kernels::Vector<Dim> &n
     ++points.count;
   }
   if (points.count < least_count<Dim>) return false;
-  points.fill_up();
+  points.pad_to_lanes();
   kernels::SurfaceFit<Dim, Values> fit;
   if (!kernels::fit_surface<Dim, Values>(points, &fit)) return false;
   constexpr double most = largest_residual / radius<Dim>;
@@ -411,7 +411,7 @@ void SurfaceMarkers::sort(const SurfaceCells &surface, int phase) {
 }
 
 void SurfaceMarkers::find_strain(const SurfaceCells &surface, int phase, std::vector<Strain> *strains) {
-  VerbScope scope(Verb::membrane);
+  EventScope scope(Event::membrane);
   sort(surface, phase);
   std::vector<int> marker_of;
   for (const Near &near : near_) marker_of.push_back(near.marker);

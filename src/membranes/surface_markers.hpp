@@ -38,7 +38,8 @@ public:
   void find_strain(const SurfaceCells &surface, int phase, std::vector<Strain> *strains);
   /// Pulls the markers of a phase towards its surface and removes those far from it. `fields` as SurfaceCells::find()
   /// left them.
-  void settle(const SurfaceCells &surface, const Field &fields, int phase, std::vector<SurfaceMarker> *markers) const;
+  void pull_to_surface(const SurfaceCells &surface, const Field &fields, int phase,
+                       std::vector<SurfaceMarker> *markers) const;
   /// Assigns each marker to the present phase of its body and removes markers of bodies that have left. Reads one ghost
   /// of labels.
   void update_phases(const std::vector<Phase> &phases, std::vector<SurfaceMarker> *markers) const;

@@ -129,7 +129,7 @@ PetscErrorCode measure_surfaces(const Domain &domain, const std::vector<Phase> &
                                 const std::vector<SurfaceSample> &samples, const BodyOwners &owners,
                                 const std::vector<Int3> &references, std::vector<SurfaceMeasure> *result) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::bodies);
+  EventScope scope(Event::bodies);
   const int dim = domain.dimension();
   const Real3 &h = domain.spacing();
   const Units units(domain);

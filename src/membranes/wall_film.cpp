@@ -1,6 +1,6 @@
 #include "membranes/wall_film.hpp"
 
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "grid/row_scratch.hpp"
 #include "membranes/smooth_row.hpp"
 
@@ -25,7 +25,8 @@ double nearness(double smoothed) { return std::clamp(4 * smoothed - 0.25, 0.0, 1
 
 }  // namespace
 
-void WallFilm::find(const Box &box, const BoxSides &sides, const std::vector<ConstView> &rigid, Field &scratch) {
+void WallFilm::find(const Box &box, const BoundaryConditions &sides, const std::vector<ConstView> &rigid,
+                    Field &scratch) {
   const Layout &layout = box.layout();
   const int dim = box.dimension(), reach = 1 + smooth_reach, layers_z = dim == 3 ? 1 : 0;
   const View solid = scratch[0], near = scratch[1];

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "base/exact_sum.hpp"
+#include "field/boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 
 namespace eulastic {
 
@@ -14,7 +14,7 @@ public:
 
   /// Finds the cells and faces of a block beside walls: solid boundaries of the domain and rigid bodies that do not
   /// travel, whose solid fractions are `rigid`, with three ghosts. `scratch`: work_fields components.
-  void find(const Box &box, const BoxSides &sides, const std::vector<ConstView> &rigid, Field &scratch);
+  void find(const Box &box, const BoundaryConditions &sides, const std::vector<ConstView> &rigid, Field &scratch);
   /// Adds the force of the walls on the bodies of a membrane's phase. Reads one ghost of phi.
   void add_force(const Phase &phase, Field &force) const;
   /// Adds, divided by the cell volume, minus the power of the force and the energy stored in it.

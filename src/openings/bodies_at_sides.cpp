@@ -26,7 +26,7 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   for (std::size_t b = 0; b < boxed.size(); ++b) {
     const BodyInBox &body = boxed[b];
     for (const auto [d, high] : flow_.domain.sides())
-      if (const SideKind kind = flow_.spec.sides[d][high].kind; volume_crosses(kind) && (start || !is_open(kind)))
+      if (const BoundaryKind kind = flow_.spec.sides[d][high].kind; fluid_crosses(kind) && (start || !is_open(kind)))
         if (has_solid(*body.box, body.phase->fraction[0], d, high, free_layers, BodyCells::threshold))
           hold(body.species, d, high);
     if (!start && leaves_box(body)) leaving.push_back(b);
@@ -34,8 +34,8 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   found[3] = !leaving.empty();
   for (int p = 0; p < static_cast<int>(flow_.now.phases.size()); ++p)
     for (const auto [d, high] : flow_.domain.sides()) {
-      const SideKind kind = flow_.spec.sides[d][high].kind;
-      if (flow_.now.phases[p].material.is_rigid() || flow_.now.phases[p].boxed || !volume_crosses(kind)) continue;
+      const BoundaryKind kind = flow_.spec.sides[d][high].kind;
+      if (flow_.now.phases[p].material.is_rigid() || flow_.now.phases[p].boxed || !fluid_crosses(kind)) continue;
       const bool stops = start || !is_open(kind) || is_held(flow_.now.phases[p]);
       if (!has_solid(flow_.domain, flow_.now.phases[p].fraction[0], d, high, free_layers,
                      stops ? BodyCells::threshold : 0))
@@ -112,10 +112,10 @@ PetscErrorCode BodiesAtSides::take_out_bodies(bool whole) {
   for (Phase &phase : flow_.now.phases) {
     if (!concerned(phase)) continue;
     take_out(flow_.domain, leaves, &phase);
-    PetscCall(flow_.settle(&phase));
+    PetscCall(flow_.rebuild_derived_fields(&phase));
   }
   if (!whole) PetscFunctionReturn(0);
-  for (FlowPart *part : flow_.parts) PetscCall(part->see_bodies_leave());
+  for (FlowPart *part : flow_.parts) PetscCall(part->observe_removed_bodies());
   PetscFunctionReturn(0);
 }
 
@@ -218,7 +218,7 @@ PetscErrorCode BodiesAtSides::feed_boxed(const std::vector<int> &labels) {
 }
 
 // A body that has left its inlet generator comes in behind; where others fill its place it waits.
-PetscErrorCode BodiesAtSides::follow() {
+PetscErrorCode BodiesAtSides::update_after_labels() {
   std::vector<int> all, passed, boxed;
   std::vector<BodyCopy> copies;
   PetscFunctionBeginUser;
@@ -244,8 +244,8 @@ PetscErrorCode BodiesAtSides::follow() {
     generators_->forget(copy.label);
     Phase &phase = flow_.now.phases[copy.phase];
     put_body(flow_.domain, copy, shift, flow_.bodies.bodies(), &phase);
-    PetscCall(flow_.settle(&phase));
-    for (FlowPart *part : flow_.parts) PetscCall(part->see_new_body(phase, copy.phase, flow_.bodies.bodies()));
+    PetscCall(flow_.rebuild_derived_fields(&phase));
+    for (FlowPart *part : flow_.parts) PetscCall(part->observe_new_body(phase, copy.phase, flow_.bodies.bodies()));
   }
   PetscFunctionReturn(0);
 }

@@ -17,7 +17,7 @@ public:
 
   PetscErrorCode start() override { return check_sides(true); }
   PetscErrorCode end_step() override { return check_sides(false); }
-  PetscErrorCode follow() override;
+  PetscErrorCode update_after_labels() override;
 
 private:
   /// What becomes of a body that has left its inlet generator, as far as a rank knows: all others say has_left.

@@ -1,8 +1,8 @@
 #include "openings/body_copy.hpp"
 
-#include "base/deliver.hpp"
+#include "base/send_to_ranks.hpp"
 #include "bodies/labels.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 #include "openings/inlet_generators.hpp"
 
-#include "base/deliver.hpp"
 #include "base/exact_sum.hpp"
+#include "base/send_to_ranks.hpp"
 #include "bodies/labels.hpp"
-#include "field/fed_velocity.hpp"
-#include "field/open_sides.hpp"
+#include "field/inlet_velocity.hpp"
+#include "field/open_boundaries.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ InletGenerators::~InletGenerators() {
 
 PetscErrorCode InletGenerators::create() {
   const Domain &domain = flow_.domain;
-  const BoxSides &sides = flow_.spec.sides;
+  const BoundaryConditions &sides = flow_.spec.sides;
   PetscFunctionBeginUser;
   const Int3 position = domain.split().position_of(domain.rank());
   for (int d = 0; d < domain.dimension(); ++d)
@@ -78,9 +78,9 @@ PetscErrorCode InletGenerators::constrain(double dt) {
   for (const Stretch &stretch : stretches_) {
     const int d = stretch.d, N = flow_.domain.domain_cells()[d];
     const int end = stretch.high ? N - stretch.cells : stretch.cells;
-    Side &side = flow_.spec.sides[d][stretch.high];
-    auto fed = std::make_shared<FedVelocity>();
-    PetscCall(FedVelocity::copy(flow_.domain, velocity[d], d, end, stretch.line, fed.get()));
+    BoundaryCondition &side = flow_.spec.sides[d][stretch.high];
+    auto fed = std::make_shared<InletVelocity>();
+    PetscCall(InletVelocity::copy(flow_.domain, velocity[d], d, end, stretch.line, fed.get()));
     ExactSums sums(1);
     double sum, cells = 1;
     for (int e = 0; e < 3; ++e) cells *= e == d ? 1 : flow_.domain.domain_cells()[e];
@@ -102,14 +102,14 @@ PetscErrorCode InletGenerators::constrain(double dt) {
 }
 
 // The same from what is on the sides already.
-PetscErrorCode InletGenerators::recall() {
+PetscErrorCode InletGenerators::begin_resume() {
   const Field &velocity = flow_.now.velocity;
   PetscFunctionBeginUser;
   for (const Stretch &stretch : stretches_) {
     const int d = stretch.d;
-    auto fed = std::make_shared<FedVelocity>();
-    PetscCall(FedVelocity::copy(flow_.domain, velocity[d], d, stretch.high ? flow_.domain.domain_cells()[d] : 0,
-                                stretch.line, fed.get()));
+    auto fed = std::make_shared<InletVelocity>();
+    PetscCall(InletVelocity::copy(flow_.domain, velocity[d], d, stretch.high ? flow_.domain.domain_cells()[d] : 0,
+                                  stretch.line, fed.get()));
     flow_.spec.sides[d][stretch.high].fed = std::move(fed);
   }
   PetscFunctionReturn(0);

@@ -23,7 +23,7 @@ public:
   ~InletGenerators() override;
   PetscErrorCode create();
   PetscErrorCode start() override;
-  PetscErrorCode recall() override;
+  PetscErrorCode begin_resume() override;
   PetscErrorCode constrain(double dt) override;
   int count() const { return static_cast<int>(stretches_.size()); }
 

@@ -7,7 +7,8 @@
 namespace eulastic {
 bool has_solid(const Box &box, ConstView fraction, int d, bool high, int layers, double more_than) {
   bool any = false;
-  for_points(box.cells_at(d, high, layers), [&](int i, int j, int k) { any = any || fraction(i, j, k) > more_than; });
+  for_points(box.boundary_cells(d, high, layers),
+             [&](int i, int j, int k) { any = any || fraction(i, j, k) > more_than; });
   return any;
 }
 
@@ -52,7 +53,7 @@ void mark_staying(const Box &box, int layers, const Phase &phase, std::map<int, 
 void mark_leaving(const Box &box, int d, bool high, int layers, bool whole, Phase *phase,
                   std::map<int, Leaving> *leaves) {
   const View fraction = phase->fraction[0], label = phase->label[0];
-  for_points(box.cells_at(d, high, layers), [&](int i, int j, int k) {
+  for_points(box.boundary_cells(d, high, layers), [&](int i, int j, int k) {
     if (!(fraction(i, j, k) > 0)) return;
     if (label(i, j, k) > 0)
       (*leaves)[static_cast<int>(label(i, j, k))] = Leaving::leaves;

@@ -1,7 +1,7 @@
 #include "openings/loaded_outlets.hpp"
 
 #include "base/exact_sum.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "flow/correction.hpp"
 #include "parts/state.hpp"
 #include "rigid/rigid_surfaces.hpp"
@@ -13,7 +13,7 @@ namespace {
 void raise_ghosts(const Box &box, int d, bool high, View pressure) {
   const std::ptrdiff_t inward = high ? -pressure.stride(d) : pressure.stride(d);
   const std::ptrdiff_t ghost = high ? 0 : -pressure.stride(d);  // of the cell above the face
-  for_points(box.faces_on(d, high), [&](int i, int j, int k) {
+  for_points(box.boundary_faces(d, high), [&](int i, int j, int k) {
     double *at = &pressure(i, j, k) + ghost;
     *at = 2 - at[inward];
   });
@@ -36,7 +36,7 @@ PetscErrorCode LoadedOutlets::measure(const Field &velocity, std::vector<double>
     const auto [d, high] = loads_.side(n);
     const ConstView v = velocity[d];
     const int outward = high ? 1 : -1;
-    for_points(domain.faces_on(d, high), [&](int i, int j, int k) { sums.add(n, outward * v(i, j, k)); });
+    for_points(domain.boundary_faces(d, high), [&](int i, int j, int k) { sums.add(n, outward * v(i, j, k)); });
   }
   flow->resize(loads_.count());
   PetscCall(sums.reduce(domain.comm(), flow->data()));
@@ -53,8 +53,8 @@ PetscErrorCode LoadedOutlets::start() {
     Field pressure(domain, 1), velocity(domain, domain.dimension());
     const double push = (high ? -2 : 2) / (flow_.fluid.density * domain.spacing()[d]);
     View v = velocity[d];
-    for_points(domain.faces_on(d, high), [&](int i, int j, int k) { v(i, j, k) = push; });
-    if (flow_.rigid) open_faces(domain, *flow_.rigid, velocity);
+    for_points(domain.boundary_faces(d, high), [&](int i, int j, int k) { v(i, j, k) = push; });
+    if (flow_.rigid) scale_open_faces(domain, *flow_.rigid, velocity);
     PetscCall(projection_.make_solenoidal(true, velocity, pressure));
     PetscCall(flow_.exchange.update_ghosts(pressure, 1));
     fill_ghosts_of_increment(domain, pressure[0], 1);
@@ -81,7 +81,7 @@ PetscErrorCode LoadedOutlets::end_projection(double dt, const Field &divergence,
   PetscFunctionBeginUser;
   PetscCall(measure(flow_.velocity_star, &flow));
   loads_.add_up(flow_.domain, loads_.settle(dt, flow), increment);
-  for (FlowPart *part : flow_.parts) PetscCall(part->see_increment(increment));
+  for (FlowPart *part : flow_.parts) PetscCall(part->observe_increment(increment));
   PetscCall(correct_velocity(flow_.domain, flow_.fluid.density, dt, 0, increment, divergence, flow_.velocity_star,
                              flow_.now.pressure));
   for (FlowPart *part : flow_.parts) PetscCall(part->correct(flow_.now.time + dt, dt, increment, flow_.velocity_star));

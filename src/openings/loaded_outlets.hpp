@@ -12,12 +12,12 @@ class LoadedOutlets final : public FlowPart {
 public:
   LoadedOutlets(Flow *flow, Projection *projection)
       : flow_(*flow), projection_(*projection), loads_(flow->spec.sides) {}
-  static bool exist(const BoxSides &sides) { return !OutletLoads::none(sides); }
+  static bool exist(const BoundaryConditions &sides) { return !OutletLoads::none(sides); }
 
   std::size_t bytes() const override { return loads_.bytes(); }
   PetscErrorCode carry(CarriedState *state) override;
   PetscErrorCode start() override;
-  void give_pressures(BoxSides *sides) const override { *sides = loads_.with_pressures(*sides); }
+  void set_boundary_pressures(BoundaryConditions *sides) const override { *sides = loads_.with_pressures(*sides); }
   PetscErrorCode prepare(double dt) override;
   PetscErrorCode end_projection(double dt, const Field &divergence, Field &increment) override;
 

@@ -13,13 +13,13 @@ constexpr double damped = 0.6;
 
 }  // namespace
 
-bool OutletLoads::none(const BoxSides &sides) { return OutletLoads(sides).count() == 0; }
+bool OutletLoads::none(const BoundaryConditions &sides) { return OutletLoads(sides).count() == 0; }
 
-OutletLoads::OutletLoads(const BoxSides &sides) {
+OutletLoads::OutletLoads(const BoundaryConditions &sides) {
   for (int d = 0; d < 3; ++d)
     for (const int high : {0, 1}) {
-      const Side &side = sides[d][high];
-      if (side.kind != SideKind::pressure || !side.load.exists()) continue;
+      const BoundaryCondition &side = sides[d][high];
+      if (side.kind != BoundaryKind::pressure || !side.load.exists()) continue;
       Load load;
       load.direction = d;
       load.high = high;
@@ -42,7 +42,7 @@ void OutletLoads::set_response(int n, Field &&pressure, const std::vector<double
 
 // C dp_c/dt = Q - p_c/R', p = p_c + R Q: both by the theta method, so that any R, C and R' are stable. For the capacity
 // theta is 1/2, of second order, where the step resolves it.
-void OutletLoads::begin(const BoxSides &sides, double middle, double dt, const std::vector<double> &flow) {
+void OutletLoads::begin(const BoundaryConditions &sides, double middle, double dt, const std::vector<double> &flow) {
   for (std::size_t n = 0; n < loads_.size(); ++n) {
     Load &load = loads_[n];
     const OutletLoad &spec = load.spec;
@@ -98,8 +98,8 @@ void OutletLoads::add_up(const Box &box, const std::vector<double> &changes, Fie
     }
 }
 
-BoxSides OutletLoads::with_pressures(const BoxSides &sides) const {
-  BoxSides now = sides;
+BoundaryConditions OutletLoads::with_pressures(const BoundaryConditions &sides) const {
+  BoundaryConditions now = sides;
   for (const Load &load : loads_) now[load.direction][load.high].given = {load.pressure, 0, 0, {}};
   return now;
 }

@@ -2,16 +2,16 @@
 // Windkessel). The pressure on the side follows the flow through it, implicitly (docs/method.md, section 20).
 #pragma once
 
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 namespace eulastic {
 
 class OutletLoads {
 public:
   /// No side has a load.
-  static bool none(const BoxSides &sides);
+  static bool none(const BoundaryConditions &sides);
 
-  explicit OutletLoads(const BoxSides &sides);
+  explicit OutletLoads(const BoundaryConditions &sides);
   std::size_t bytes() const;
   int count() const { return static_cast<int>(loads_.size()); }
   /// The side of a load: direction, high.
@@ -21,7 +21,7 @@ public:
 
   /// Begins a step of length dt. `middle`: the time at which the pressure on the sides is that of the step; `flow`:
   /// volume that leaves through each side per time at the start of the step. Sets the pressures that are expected.
-  void begin(const BoxSides &sides, double middle, double dt, const std::vector<double> &flow);
+  void begin(const BoundaryConditions &sides, double middle, double dt, const std::vector<double> &flow);
   /// Ends the step. `flow` as the projection under the expected pressures has left it; returns by how much these
   /// change.
   std::vector<double> settle(double dt, const std::vector<double> &flow);
@@ -29,7 +29,7 @@ public:
   void add_up(const Box &box, const std::vector<double> &changes, Field &increment) const;
 
   /// `sides` with the present pressures on those that are loaded.
-  BoxSides with_pressures(const BoxSides &sides) const;
+  BoundaryConditions with_pressures(const BoundaryConditions &sides) const;
   /// Pressures of the capacities and on the sides: what is carried from step to step.
   std::vector<double *> numbers();
 

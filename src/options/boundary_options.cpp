@@ -47,7 +47,7 @@ public:
     row.read = [&spec = spec_](const std::string &value) { return read_text(value, &spec.velocity); };
     row.text = [&config = config_, &spec = spec_, d = d_, high = high_] {
       Real3 of_wall{};
-      if (config.boundary.is(SideKind::inflow, d, high)) return spec.velocity;
+      if (config.boundary.is(BoundaryKind::inflow, d, high)) return spec.velocity;
       if (!spec.velocity.empty() && !read_reals(spec.velocity, any_number, of_wall.data(), 3).empty())
         return spec.velocity;
       return list(of_wall.data(), 3, to_text);
@@ -55,7 +55,7 @@ public:
     rows_.real("angular_frequency", spec_.frequency, not_negative, "rad/time",
                "angular frequency of the velocity or the flow rate");
     rows_.real("phase", spec_.phase, any_number, "rad", "phase of the velocity or the flow rate");
-    only_on({SideKind::wall, SideKind::inflow}, "wall or inflow");
+    only_on({BoundaryKind::wall, BoundaryKind::inflow}, "wall or inflow");
   }
 
   void add_inflow() {
@@ -72,7 +72,7 @@ public:
         "length of the inlet generator beside the boundary: bodies and flow that pass its end also enter through the "
         "boundary");
     rows_.zero_is("off");
-    only_on({SideKind::inflow}, "inflow");
+    only_on({BoundaryKind::inflow}, "inflow");
   }
 
   void add_pressure() {
@@ -84,7 +84,7 @@ public:
                "second resistance; 0,0,0 is none");
     rows_.real("windkessel_initial_pressure", spec_.windkessel_start, any_number, "pressure",
                "pressure of the capacitance of the Windkessel at t = 0");
-    only_on({SideKind::pressure}, "pressure");
+    only_on({BoundaryKind::pressure}, "pressure");
   }
 
   void add_table_ends() {
@@ -94,7 +94,7 @@ public:
     rows_.boolean("table_hold", spec_.hold,
                   "whether a table that does not cover the run is continued by its first and its last value");
     rows_.allow_change(first_);
-    only_on({SideKind::inflow, SideKind::pressure}, "inflow or pressure");
+    only_on({BoundaryKind::inflow, BoundaryKind::pressure}, "inflow or pressure");
   }
 
 private:
@@ -107,15 +107,15 @@ private:
   }
 
   // The rows since the last call are accepted only on boundaries of these kinds.
-  void only_on(const std::vector<SideKind> &kinds, const std::string &names) {
+  void only_on(const std::vector<BoundaryKind> &kinds, const std::string &names) {
     const std::string side = std::string{"xyz"[d_]};
     std::string needed = "-boundary_" + side + (high_ ? "max " : "min ") + names;
-    if (kinds[0] == SideKind::wall) needed += ", or -boundary_" + side + " wall";
+    if (kinds[0] == BoundaryKind::wall) needed += ", or -boundary_" + side + " wall";
     for (std::size_t r = first_; r < rows_.rows.size(); ++r) {
       rows_.rows[r].only_with = needed;
       rows_.rows[r].applies = [&config = config_, kinds, d = d_, high = high_] {
         return std::any_of(kinds.begin(), kinds.end(),
-                           [&](SideKind kind) { return config.boundary.is(kind, d, high); });
+                           [&](BoundaryKind kind) { return config.boundary.is(kind, d, high); });
       };
     }
     first_ = rows_.rows.size();

@@ -2,7 +2,7 @@
 
 #include "base/one_line.hpp"
 #include "boxes/boxed_bodies.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +22,9 @@ bool beyond(double value, double limit) { return limit > 0 && !(value <= limit);
 // For extremes that met such a value.
 Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
   const State &state = solver.state();
-  const char *broken = solver.limits(extremes).broken(state.dt);
-  return {"nonfinite", where(state, place_of_cell(solver.domain(), extremes.first_bad)) + "a field is not finite; " +
-                           print("dt = %.3g, ", state.dt) +
+  const char *broken = solver.limits(extremes).exceeded_limit(state.dt);
+  return {"nonfinite", where(state, place_of_cell(solver.domain(), extremes.first_non_finite)) +
+                           "a field is not finite; " + print("dt = %.3g, ", state.dt) +
                            (broken ? print("beyond the %s limit; lower -time_step", broken)
                                    : std::string("within all known limits; lower -time_step, more -grid_cells"))};
 }
@@ -47,7 +47,7 @@ Guards::Guards(const Config &config) : control_(config.guard) {
 PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &extremes, double dt, Stop *stop) const {
   PetscFunctionBeginUser;
   const State &state = solver.state();
-  if (extremes.first_bad >= 0) {
+  if (extremes.first_non_finite >= 0) {
     *stop = not_finite(solver, extremes);
     PetscFunctionReturn(0);
   }
@@ -120,7 +120,7 @@ PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
   FlowExtremes extremes;
   PetscCall(measure_extremes(solver.domain(), solver.state().velocity, solver.state().phases, &extremes,
                              solver.boxed().list()));
-  if (extremes.first_bad >= 0) *stop = not_finite(solver, extremes);
+  if (extremes.first_non_finite >= 0) *stop = not_finite(solver, extremes);
   PetscFunctionReturn(0);
 }
 

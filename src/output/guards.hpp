@@ -46,7 +46,7 @@ struct Measured {
   double resolved_drift = 0;               ///< largest of the bodies of at least a few cells at the start
   int drifting_body = 0;                   ///< its label
   Real3 drifting_place{};
-  double energy_made = 0;  ///< EnergyBudget::made_share()
+  double energy_made = 0;  ///< EnergyBudget::generated_share()
   Largest stretch;         ///< of all bodies
   Largest red_cell_area;   ///< of red cells: growth of the area since rest
   double mach = 0;         ///< largest speed over the sound speed of artificial compressibility; 0 = there is none

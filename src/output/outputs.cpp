@@ -4,7 +4,7 @@
 #include "boxes/boxed_bodies.hpp"
 #include "output/saved_state.hpp"
 #include "output/verdict.hpp"
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ void Outputs::start(const Config &config, const Domain &domain, Solver *solver, 
   membranes_ = std::any_of(config.species.begin(), config.species.end(),
                            [](const SpeciesSpec &spec) { return spec.is_membrane(); });
   energy_ = position.energy;
-  energy_.allow_return(config.method.pressure == PressureKind::acm && config.method.acm_of_the_paper());
+  energy_.allow_energy_return(config.method.pressure == PressureKind::acm && config.method.is_single_acm_step());
   const double apart = std::max(config.output.series_interval, config.time.step);
   energy_unknown_.clear();
   if (4 * apart > solver->limits({}).forcing)
@@ -39,7 +39,7 @@ PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition
   const MPI_Comm comm = domain_->comm();
   directory_ = directory;
   Row row;
-  row.sides = crossed_sides(config_.sides, *domain_);
+  row.sides = crossed_boundaries(config_.sides, *domain_);
   std::vector<std::string> columns;
   for (const auto &[name, value] : series_row(row)) columns.push_back(name);
   PetscCall(series_.open(comm, directory + "/series.csv", columns, same_directory ? position.series_rows : 0));
@@ -85,7 +85,7 @@ PetscErrorCode Outputs::measure() {
   PetscCall(measure_strains(&m));
   if (solver_->state().step > 0)
     mach_max_ = std::max(mach_max_, m.mach);  // where the flow starts div v may be anything
-  m.energy_made = energy_unknown_.empty() ? budget_now().made_share() : 0;
+  m.energy_made = energy_unknown_.empty() ? budget_now().generated_share() : 0;
   PetscFunctionReturn(0);
 }
 
@@ -100,8 +100,8 @@ PetscErrorCode Outputs::write_passed_snapshots(const std::vector<double> &times)
   PetscFunctionBeginUser;
   if (times.empty()) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
-  VerbScope scope(Verb::write);
-  PetscCall(solver_->looks().back(times, [this] { return snapshots_->write(config_, solver_); }));
+  EventScope scope(Event::write);
+  PetscCall(solver_->synchronised().replay_last_step(times, [this] { return snapshots_->write(config_, solver_); }));
   snapshot_due_.last_time = times.back();
   PetscFunctionReturn(0);
 }
@@ -118,7 +118,7 @@ PetscErrorCode Outputs::write_due(bool last) {
     PetscCall(write_passed_snapshots(snapshot_due_.between(state.time - state.dt, state.time)));
   if (seen_) {
     StageScope stage(Stage::output);
-    VerbScope scope(Verb::write);
+    EventScope scope(Event::write);
     PetscCall(write_row());
   }
   const bool waited = last && waits_;
@@ -128,16 +128,16 @@ PetscErrorCode Outputs::write_due(bool last) {
   const bool probes = series && !waited, samples = samples_.due(state.time, probes, last);
   if (!series && !snapshot && !samples) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
-  VerbScope scope(Verb::write);
+  EventScope scope(Event::write);
   if (Adhesion *adhesion = solver_->part<Adhesion>()) {
     if (probes) PetscCall(bond_files_.write_events(adhesion));
     if (snapshot) PetscCall(bond_files_.write_bonds(state.time, *adhesion));
   }
   if (samples)
-    PetscCall(solver_->looks().on_grid([&](const std::vector<Phase> &phases) {
+    PetscCall(solver_->synchronised().with_bodies_on_grid([&](const std::vector<Phase> &phases) {
       return samples_.write(state.time, probes, last, {state.velocity, state.pressure, phases});
     }));
-  if (series && (last || !solver_->is_behind())) {
+  if (series && (last || !solver_->phases_lag())) {
     PetscCall(write_row_now());
   } else if (series) {
     PetscCall(await_row(series_time_before));
@@ -184,7 +184,7 @@ void Outputs::add_measures(const EnergyBudget &budget, Summary *summary) const {
   summary->energy_lost = budget.lost();
   summary->energy_lost_elastic = budget.lost_elastic();
   summary->energy_lost_extended = budget.lost_extended();
-  summary->energy_made_share = budget.made_share_max();
+  summary->energy_made_share = budget.generated_share_max();
   summary->surface_energy = energy.surface;
   summary->surface_power = energy.surface_power;
   summary->bulk_velocity = measured.flow.bulk_velocity[0];

@@ -6,7 +6,7 @@
 #include "output/outputs.hpp"
 #include "output/time_step_control.hpp"
 #include "rigid/rigid_flow.hpp"
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -89,15 +89,16 @@ void interpolate_between(const EnergyState &other, double share, EnergyState *en
 
 }  // namespace
 
-// All but volume drifts, of phases as Looks::phases() has them; `measured`: of another time, or of this velocity.
+// All but volume drifts, of phases as SynchronisedState::phases() has them; `measured`: of another time, or of this
+// velocity.
 PetscErrorCode Outputs::look(Measured *measured) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   Measured &m = *measured;
   const std::vector<Phase> *phases = nullptr;
   std::vector<BodyInBox> boxed;
-  PetscCall(solver_->looks().phases(&phases));
-  PetscCall(solver_->looks().bodies(&boxed));
+  PetscCall(solver_->synchronised().phases(&phases));
+  PetscCall(solver_->synchronised().bodies(&boxed));
   const Fluid &fluid = config_.fluid;
   const Real3 &f = fluid.body_force.force;
   const Field *viscosity = nullptr;
@@ -136,8 +137,8 @@ PetscErrorCode Outputs::measure_energy(const Measured &measured, Row *row) {
   EnergyState &energy = row->energy = {};
   const std::vector<Phase> *phases = nullptr;
   std::vector<BodyInBox> boxed;
-  PetscCall(solver_->looks().phases(&phases));
-  PetscCall(solver_->looks().bodies(&boxed));
+  PetscCall(solver_->synchronised().phases(&phases));
+  PetscCall(solver_->synchronised().bodies(&boxed));
   energy.kinetic = measured.flow.kinetic_energy;
   energy.elastic = measured.flow.elastic_energy;
   energy.surface = measured.surface.energy;
@@ -145,8 +146,8 @@ PetscErrorCode Outputs::measure_energy(const Measured &measured, Row *row) {
   energy.dissipation = measured.flow.viscous_dissipation;
   const Field *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
-  const EnergyNumbers numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
-                              &config_.sides, state.time,      viscosity};
+  const EnergyParameters numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
+                                 &config_.sides, state.time,      viscosity};
   PetscCall(measure_energy_rates(*domain_, state.velocity, *phases, numbers, &energy.rates, boxed));
   double power = 0;
   PetscCall(solver_->force_power(&power));
@@ -202,7 +203,7 @@ PetscErrorCode Outputs::look(Row *row) {
 PetscErrorCode Outputs::await_row(double time_before) {
   PetscFunctionBeginUser;
   row_ = {};
-  PetscCall(solver_->looks().behind([this] { return look(&row_); }));
+  PetscCall(solver_->synchronised().at_half_step([this] { return look(&row_); }));
   waits_ = true;
   series_time_before_ = time_before;
   PetscFunctionReturn(0);
@@ -211,7 +212,7 @@ PetscErrorCode Outputs::await_row(double time_before) {
 PetscErrorCode Outputs::resume_row() {
   PetscFunctionBeginUser;
   const double time = solver_->state().time;
-  if (!series_due_.at(time) || !solver_->is_behind()) PetscFunctionReturn(0);
+  if (!series_due_.at(time) || !solver_->phases_lag()) PetscFunctionReturn(0);
   PetscCall(await_row(std::exchange(series_due_.last_time, time)));
   PetscFunctionReturn(0);
 }
@@ -219,7 +220,7 @@ PetscErrorCode Outputs::resume_row() {
 PetscErrorCode Outputs::record_middle(double dt) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::output);
-  VerbScope scope(Verb::write);
+  EventScope scope(Event::write);
   Row next = row_;
   PetscCall(look(&next));
   const double share = row_.dt / (row_.dt + dt);
@@ -257,7 +258,7 @@ PetscErrorCode Outputs::write_waiting() {
   PetscFunctionBeginUser;
   if (!waits_ && !seen_) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
-  VerbScope scope(Verb::write);
+  EventScope scope(Event::write);
   if (seen_)
     PetscCall(write_row());
   else
@@ -337,7 +338,7 @@ PetscErrorCode Outputs::write_row() {
   is_new_ = true;
   Measured &measured = row_.measured;
   energy_.advance(measured.time, row_.energy);
-  measured.energy_made = energy_unknown_.empty() ? energy_.made_share() : 0;
+  measured.energy_made = energy_unknown_.empty() ? energy_.generated_share() : 0;
   std::vector<double> values;
   for (const auto &[name, value] : series_row(row_)) values.push_back(value);
   PetscCall(series_.write(values));

@@ -1,7 +1,7 @@
 #include "output/saved_state.hpp"
 
 #include "adhesion/adhesion.hpp"
-#include "base/deliver.hpp"
+#include "base/send_to_ranks.hpp"
 #include "boxes/boxed_bodies.hpp"
 #include "diagnostics/state_hash.hpp"
 #include "grid/domain.hpp"
@@ -71,7 +71,7 @@ void add_position(bool has_bonds, RunPosition *position, CarriedState *state) {
 CheckpointNumbers numbers_of(const Solver &solver, const CarriedState &state, const RunPosition &position) {
   CheckpointNumbers numbers = numbers_of(state);
   numbers.reals["energy_budget"] = position.outputs.energy.numbers();
-  numbers.reals["energy_made"] = position.outputs.energy.made_numbers();
+  numbers.reals["energy_made"] = position.outputs.energy.generated_numbers();
   numbers.integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
   return numbers;
 }
@@ -152,7 +152,7 @@ PetscErrorCode require_different(const Domain &domain, const std::string &path, 
     numbers.push_back(static_cast<int>(heads[n]));
     owners.push_back(BodyRange::owner(numbers.back() - 1, bodies, domain.ranks()));
   }
-  PetscCall(deliver(domain.comm(), owners, &numbers));
+  PetscCall(send_to_ranks(domain.comm(), owners, &numbers));
   std::sort(numbers.begin(), numbers.end());
   const auto twice = std::adjacent_find(numbers.begin(), numbers.end());
   PetscCall(require_range(domain, path,
@@ -327,7 +327,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   add_position(solver->part<Adhesion>() != nullptr, position, &state);
   take_numbers(numbers, state);
   position->outputs.energy.set_numbers(numbers.reals["energy_budget"]);
-  position->outputs.energy.set_made_numbers(numbers.reals["energy_made"]);
+  position->outputs.energy.set_generated_numbers(numbers.reals["energy_made"]);
   PetscCall(load_markers(file, path, solver));
   PetscCall(solver->resume(numbers.integers["stages_and_sweeps"][0], numbers.integers["stages_and_sweeps"][1]));
   PetscCall(place_markers(*file, solver));

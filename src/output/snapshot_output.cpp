@@ -2,7 +2,7 @@
 
 #include "diagnostics/surface_shear_stress.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 
 #include <algorithm>
 
@@ -62,8 +62,8 @@ PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vec
 
 PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
   PetscFunctionBeginUser;
-  PetscCall(
-      solver->looks().on_grid([&](const std::vector<Phase> &phases) { return write_fields(config, solver, phases); }));
+  PetscCall(solver->synchronised().with_bodies_on_grid(
+      [&](const std::vector<Phase> &phases) { return write_fields(config, solver, phases); }));
   PetscFunctionReturn(0);
 }
 

@@ -41,7 +41,7 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
     const TimeStepLimits limits = solver->limits(extremes_);
     if (time_.step > 0) {
       dt_ = time_.step;
-      if (const char *limit = limits.broken(dt_); limit && !warned_) {
+      if (const char *limit = limits.exceeded_limit(dt_); limit && !warned_) {
         *warning = print("-time_step %g exceeds the %s limit (automatic: %g)", dt_, limit, limits.automatic());
       }
     } else {

@@ -30,21 +30,22 @@ double over(double a, double b) { return b > 0 ? a / b : 0; }
 
 Summary::Verdict judge_energy(const Evidence &e) {
   const std::string of = "energy", all = " of the energy that it held and was supplied with";
-  const double made = e.budget.made_share_max(), lost = over(e.budget.lost(), e.budget.handled()),
-               uncertain = over(e.budget.uncertain(), e.budget.handled());
+  const double made = e.budget.generated_share_max(), lost = over(e.budget.lost(), e.budget.throughput()),
+               uncertainty = over(e.budget.uncertainty(), e.budget.throughput());
   if (!e.energy_unknown.empty()) return {of, look, e.energy_unknown};
   if (made > made_to_look || made != made)
     return {of, word(made, made_to_look, energy_not_to_trust),
             "the numerics generated energy, " + percent(made) + all + " meanwhile"};
-  if (lost - uncertain > lost_to_look || lost != lost)
-    return {of, word(lost - uncertain, lost_to_look, energy_not_to_trust), "the numerics lost " + percent(lost) + all};
-  if (uncertain > rows_to_look)
+  if (lost - uncertainty > lost_to_look || lost != lost)
+    return {of, word(lost - uncertainty, lost_to_look, energy_not_to_trust),
+            "the numerics lost " + percent(lost) + all};
+  if (uncertainty > rows_to_look)
     return {of, look,
-            "rows of series.csv are too far apart to tell within " + percent(uncertain) + all +
+            "rows of series.csv are too far apart to tell within " + percent(uncertainty) + all +
                 "; use a shorter -series_interval"};
   return {of, fine,
           "the numerics " + (lost < 0 ? "made " + percent(-lost) : "lost " + percent(lost)) + all +
-              (uncertain > 0.01 ? ", known within " + percent(uncertain) : "")};
+              (uncertainty > 0.01 ? ", known within " + percent(uncertainty) : "")};
 }
 
 Summary::Verdict judge_volume_and_area(const Config &config, const Evidence &e) {

@@ -1,7 +1,7 @@
 #include "parts/flow.hpp"
 
-#include "field/open_sides.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
+#include "field/open_boundaries.hpp"
 #include "parts/flow_part.hpp"
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace eulastic {
 
 bool Flow::drifts() const {
   for (int d = 0; d < domain.dimension(); ++d)
-    for (const Side &side : spec.sides[d])
-      if (domain.is_wall(d) && side.kind != SideKind::symmetry) return false;
+    for (const BoundaryCondition &side : spec.sides[d])
+      if (domain.is_wall(d) && side.kind != BoundaryKind::symmetry) return false;
   return true;
 }
 
@@ -39,9 +39,9 @@ std::size_t Flow::bytes() const {
   return sum;
 }
 
-BoxSides Flow::sides_now() const {
-  BoxSides sides = spec.sides;
-  for (const FlowPart *part : parts) part->give_pressures(&sides);
+BoundaryConditions Flow::sides_now() const {
+  BoundaryConditions sides = spec.sides;
+  for (const FlowPart *part : parts) part->set_boundary_pressures(&sides);
   return sides;
 }
 
@@ -76,9 +76,9 @@ double Flow::speed_scale(double dt) const {
   return std::max({now.speed_scale, dt * std::hypot(f[0], f[1], f[2]), 1e-6 * std::min(h[0], h[1]) / dt});
 }
 
-PetscErrorCode Flow::settle(Phase *phase) {
+PetscErrorCode Flow::rebuild_derived_fields(Phase *phase) {
   PetscFunctionBeginUser;
-  for (FlowPart *part : parts) PetscCall(part->settle(phase));
+  for (FlowPart *part : parts) PetscCall(part->rebuild_derived_fields(phase));
   PetscFunctionReturn(0);
 }
 
@@ -93,7 +93,7 @@ PetscErrorCode Flow::find_rows(Phase *phase) {
   const Int3 &n = domain.cells();
   if (double(phase->rows.cells()) > large_share * n[0] * n[1] * n[2])
     for (Field *block : {&phase->fraction, &phase->tensor.field, &next_fraction, &next_tensor})
-      if (block != &phase->tensor.field || (phase->material.carries_tensor() && !phase->boxed)) block->leave_rest();
+      if (block != &phase->tensor.field || (phase->material.carries_tensor() && !phase->boxed)) block->allocate_fully();
   PetscFunctionReturn(0);
 }
 

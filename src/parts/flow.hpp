@@ -23,7 +23,7 @@ struct RigidMeans;
 
 struct SolverSpec : Method {
   Fluid fluid;
-  BoxSides sides;
+  BoundaryConditions sides;
 };
 
 struct Flow {
@@ -65,12 +65,12 @@ struct Flow {
   std::size_t bytes() const;
   bool staggered() const { return spec.staggered(); }
   /// Whether phases and pressure are half a step behind the velocity.
-  bool is_behind() const { return staggered() && now.step > 0; }
+  bool phases_lag() const { return staggered() && now.step > 0; }
   /// Whether no wall resists the flow, so that a net force would accelerate all of it without bound.
   bool drifts() const;
-  PhasePlace place_of_phases() { return {&domain, &spec.sides, &exchange}; }
+  PhaseDomain phase_domain() { return {&domain, &spec.sides, &exchange}; }
   /// The boundaries with the present pressures of those that have loads.
-  BoxSides sides_now() const;
+  BoundaryConditions sides_now() const;
   /// Updates ghosts from other ranks and behind boundaries: of a velocity at `time`, and of a field at centres.
   PetscErrorCode update_velocity_ghosts(Field &velocity, double time, int width);
   PetscErrorCode update_centre_ghosts(Field &field, int width);
@@ -82,9 +82,9 @@ struct Flow {
   double speed_scale(double dt) const;
   /// Rebuilds everything that follows from the owned cells of a phase (ghosts, occupied rows, B outside the body) after
   /// they have been set.
-  PetscErrorCode settle(Phase *phase);
+  PetscErrorCode rebuild_derived_fields(Phase *phase);
   /// Finds the occupied rows of a phase and updates the ghosts of its phi. A phase that fills more than a quarter of
-  /// the grid moves to ordinary memory (Field::leave_rest).
+  /// the grid moves to ordinary memory (Field::allocate_fully).
   PetscErrorCode find_rows(Phase *phase);
 };
 

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "base/petsc.hpp"
+#include "field/boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "field/surface_marker.hpp"
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace eulastic {
 
 struct CarriedState;
 /// A callback that measures or writes the flow at some point of a step.
-using Look = std::function<PetscErrorCode()>;
+using Observer = std::function<PetscErrorCode()>;
 
 /// Weights of the advection term of this step and of the last one: (1, 0) is Euler, (1 + r/2, -r/2) Adams-Bashforth of
 /// second order.
@@ -48,7 +48,7 @@ struct MomentumRate {
 };
 
 /// Phases and bodies in boxes at the time of State::velocity, for measures.
-struct FlowLook {
+struct SynchronisedBodies {
   const std::vector<Phase> &phases;
   const std::vector<BodyInBox> &boxed;
 };
@@ -65,14 +65,14 @@ public:
   /// Called once, when the owned cells of all fields are set and the ghosts of velocity and pressure are valid.
   virtual PetscErrorCode start() { return 0; }
   /// Called at a restart after the state has been read, before the ghosts of the velocity behind boundaries are filled.
-  virtual PetscErrorCode recall() { return 0; }
+  virtual PetscErrorCode begin_resume() { return 0; }
   /// Called at a restart when all ghosts of velocity and pressure are valid.
   virtual PetscErrorCode resume() { return 0; }
 
   /// Sets owned faces of `velocity` whose velocity is prescribed, at `time`.
   virtual PetscErrorCode prescribe_velocity(double /*time*/, Field & /*velocity*/) { return 0; }
   /// Sets the present pressures of boundaries.
-  virtual void give_pressures(BoxSides *) const {}
+  virtual void set_boundary_pressures(BoundaryConditions *) const {}
   /// Shortest period of anything the part moves, in time; the time step resolves it.
   virtual double shortest_period() const { return HUGE_VAL; }
   /// Largest time step that the part's forces permit.
@@ -106,7 +106,7 @@ public:
   virtual PetscErrorCode begin_correction(Field & /*divergence*/) { return 0; }
   /// Called before an increment corrects Flow::velocity_star; not if the increment is a formula
   /// (PressureSolver::formula()).
-  virtual PetscErrorCode see_increment(const Field &) { return 0; }
+  virtual PetscErrorCode observe_increment(const Field &) { return 0; }
   /// Called after an increment has corrected a velocity of `time` over dt.
   virtual PetscErrorCode correct(double /*time*/, double /*dt*/, const Field & /*increment*/, Field & /*velocity*/) {
     return 0;
@@ -119,7 +119,7 @@ public:
   /// Fills phases of bodies whose position is a function of time alone, at `time`.
   virtual PetscErrorCode position_phases(double /*time*/, std::vector<Phase> * /*phases*/) { return 0; }
   /// Called after the labels and reference cells of all bodies have been updated.
-  virtual PetscErrorCode follow() { return 0; }
+  virtual PetscErrorCode update_after_labels() { return 0; }
   /// Called last in a step; time and number of the state are still those of its start.
   virtual PetscErrorCode end_step() { return 0; }
 
@@ -127,16 +127,16 @@ public:
 
   /// Makes the part's data of a phase on the grid consistent after its owned cells have been set. GridBodies, the first
   /// of all parts, finds the occupied rows.
-  virtual PetscErrorCode settle(Phase *) { return 0; }
+  virtual PetscErrorCode rebuild_derived_fields(Phase *) { return 0; }
   /// Called after a body with this label has been added to phase `number` on the grid, whose derived fields are valid.
-  virtual PetscErrorCode see_new_body(const Phase &, int /*number*/, int /*label*/) { return 0; }
+  virtual PetscErrorCode observe_new_body(const Phase &, int /*number*/, int /*label*/) { return 0; }
   /// Called after bodies have been removed from phases on the grid.
-  virtual PetscErrorCode see_bodies_leave() { return 0; }
+  virtual PetscErrorCode observe_removed_bodies() { return 0; }
   /// Adds the power of the part's forces on the flow.
-  virtual PetscErrorCode add_power(const FlowLook &, double * /*power*/) { return 0; }
+  virtual PetscErrorCode add_power(const SynchronisedBodies &, double * /*power*/) { return 0; }
   /// Adds energy and power of the part's surfaces, and samples of all owned cells at labelled membranes (null: none
   /// wanted).
-  virtual PetscErrorCode add_surface_energy(const FlowLook &, SurfaceEnergy *,
+  virtual PetscErrorCode add_surface_energy(const SynchronisedBodies &, SurfaceEnergy *,
                                             std::vector<SurfaceSample> * /*samples*/) {
     return 0;
   }

@@ -28,9 +28,9 @@ struct Method {
   bool staggered() const { return kind == MethodKind::fast; }
   bool linear_force() const { return staggered() && elastic_force == ElasticForce::linear; }
   /// Whether free bodies may be stored in boxes of their own (boxes/free_bodies.hpp).
-  bool boxes_bodies() const { return staggered() && interface == InterfaceScheme::plic; }
+  bool allows_boxed_bodies() const { return staggered() && interface == InterfaceScheme::plic; }
   /// Whether the pressure takes a single step of (11) to (13), as in the paper.
-  bool acm_of_the_paper() const { return acm_sweeps_max == 1 && acm_memory == 0 && !acm_coarse; }
+  bool is_single_acm_step() const { return acm_sweeps_max == 1 && acm_memory == 0 && !acm_coarse; }
 };
 
 /// Default settings of `-method classic` or `fast`.

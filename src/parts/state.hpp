@@ -1,8 +1,8 @@
 // The state of a flow, which persists from one step to the next.
 #pragma once
 
+#include "field/boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "field/surface_marker.hpp"
 #include "io/checkpoint.hpp"
 

@@ -1,7 +1,7 @@
 #include "pressure/acm.hpp"
 
 #include "base/events.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "grid/blocks.hpp"
 #include "grid/sum_row_parts.hpp"
 #include "kernels/stencils.hpp"
@@ -76,7 +76,7 @@ AcmCoefficients acm_coefficients(const AcmSums &s) {
 
 PetscErrorCode AcmSolver::solve(double dt, const Field &divergence, Field &pressure, Field &increment) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::acm);
+  EventScope scope(Event::acm);
   const int dim = domain_->dimension();
   const bool open = domain_->any_open();
   if (open) fill_ghosts_of_increment(*domain_, pressure[0], 1);

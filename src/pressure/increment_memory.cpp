@@ -1,6 +1,6 @@
 #include "pressure/increment_memory.hpp"
 
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 
 #include <algorithm>
 #include <cmath>

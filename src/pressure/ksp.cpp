@@ -2,7 +2,7 @@
 
 #include "base/exact_sum.hpp"
 #include "field/global_vector.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 
 #include <algorithm>
 #include <cmath>

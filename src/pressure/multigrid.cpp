@@ -75,7 +75,7 @@ EULASTIC_INLINE void restrict_rows(const MultigridLevel &fine, double factor, Co
       for (int i = 0; i < n; ++i) coarse[i] = sum[i];
       return;
     }
-    kernels::join_pairs(n, sum + begin, x.weight[0].data(), x.weight[1].data(), coarse);
+    kernels::restrict_pairs(n, sum + begin, x.weight[0].data(), x.weight[1].data(), coarse);
     if (x.weight[2].back() > 0) coarse[n - 1] += x.weight[2].back() * sum[end - 1];
   });
 }
@@ -92,7 +92,7 @@ EULASTIC_CLONES void restrict_3d(const MultigridLevel &f, double a, ConstView r,
 // Smoothing stages that share a pass over memory. Stage s reads fields[s % 2] and writes the other field. The first
 // stage of a level interpolates.
 struct Pass {
-  const Sides *sides;
+  const HaloOverlap *sides;
   const MultigridLevel *fine;
   const MultigridLevel *coarse;  // level to interpolate from; null: all stages relax
   const double *factor;          // of every stage
@@ -110,10 +110,10 @@ EULASTIC_INLINE void prolong_row(const MultigridLevel &fine, const Segment &row,
   const int j = row.j, k = row.k;
   const double *rhs = r.row(j, k);
   double *to = out.row(j, k);
-  const kernels::Corners corners{{e.row(y.parent[j], z.parent[k]), e.row(y.neighbour[j], z.parent[k]),
-                                  e.row(y.parent[j], z.neighbour[k]), e.row(y.neighbour[j], z.neighbour[k])},
-                                 y.share[j],
-                                 z.share[k]};
+  const kernels::CoarseRows corners{{e.row(y.parent[j], z.parent[k]), e.row(y.neighbour[j], z.parent[k]),
+                                     e.row(y.parent[j], z.neighbour[k]), e.row(y.neighbour[j], z.neighbour[k])},
+                                    y.share[j],
+                                    z.share[k]};
   if (x.stride == 1) return kernels::add_interpolated(row.i_begin, row.i_end, corners, factor, rhs, to);
   const int first = x.first > 0 ? -1 : 0, regular = x.first + 2 * (coarse_cells - 1);
   kernels::add_interpolated_pairs(first, coarse_cells, corners, x.low(), x.high(), factor, rhs + x.first, to + x.first);
@@ -128,7 +128,7 @@ EULASTIC_INLINE void prolong_row(const MultigridLevel &fine, const Segment &row,
 
 template <int Dim>
 EULASTIC_INLINE void stages_of_task(const Pass &pass, const StagePass &order, const StagePass::Task &task) {
-  order.go<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
+  order.for_rows<Dim>(task, [&](int s, Segment row, int j_end) EULASTIC_BODY {
     const View q = pass.fields[s % 2], out = pass.fields[1 - s % 2];
     if (s == pass.depth) return (*pass.rows_done)(q, task.thread, row.j, j_end, row.k);
     for (; row.j < j_end; ++row.j) {
@@ -257,7 +257,7 @@ PetscErrorCode Multigrid::cycle(std::size_t l, const Field &rhs, Field &solution
 PetscErrorCode Multigrid::smooth(MultigridLevel &fine, MultigridLevel &coarse, const Field &rhs, Field &solution,
                                  Field &scratch, const RowsDone &rows_done) {
   PetscFunctionBeginUser;
-  const Sides sides(fine.box());
+  const HaloOverlap sides(fine.box());
   const Relaxations &relax = relaxations(fine);
   std::vector<double> factors{relax.before * fine.step()};
   for (const double after : relax.after) factors.push_back(after * fine.step());

@@ -2,7 +2,7 @@
 
 #include "base/events.hpp"
 #include "field/extend_layer.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "grid/sum_row_parts.hpp"
 #include "kernels/momentum.hpp"
 #include "pressure/row_sums.hpp"
@@ -114,7 +114,7 @@ void ObstacleSolver::update_faces(const RigidFaces &faces) {
     for (int d = 0; d < domain_->dimension(); ++d)
       for (int high = 0; high < 2; ++high) {
         const int shift = d == 0 && high, face = 2 * d + high;
-        faces.find_beside(d, high, row.j, row.k, &body);
+        faces.find_bodies_beside(d, high, row.j, row.k, &body);
         for (int i = 0; i < n[0]; ++i)
           if (body[i] >= 0) open[i][face] = depth[i][face] = 0;
         const RigidFaces::Row beside = faces.row(d, row.j + (d == 1 && high), row.k + (d == 2 && high));
@@ -226,7 +226,7 @@ PetscErrorCode ObstacleSolver::products(const Field &a, const Field &b, const Fi
 PetscErrorCode ObstacleSolver::solve(double dt, const Field &divergence, Field &pressure, Field &increment) {
   PetscFunctionBeginUser;
   WorkSpace::Lease lease;
-  PetscCall(work_->take("pressure around rigid bodies", work_fields, &lease));
+  PetscCall(work_->lease("pressure around rigid bodies", work_fields, &lease));
   Field residual = lease.part(0, 1), direction = lease.part(1, 1), image = lease.part(2, 1),
         correction = lease.part(3, 1);
   residual.copy_from(divergence);
@@ -291,11 +291,11 @@ constexpr double least_open = 0.03;  // least factor by which D* is divided
 
 PetscErrorCode ObstacleSolver::extrapolate_into_closed(Field &pressure) const {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::rigid);
+  EventScope scope(Event::rigid);
   const Layout &layout = domain_->layout();
   const std::ptrdiff_t stride[3] = {1, layout.sy, layout.sz};
   WorkSpace::Lease lease;
-  PetscCall(work_->take("known pressure", 1, &lease));
+  PetscCall(work_->lease("known pressure", 1, &lease));
   Field known = lease.part(0, 1);  // 1 in cells with a known pressure; else 0, also behind boundaries
   known.clear();
   for (const Segment &row : domain_->rows()) std::fill_n(known[0].row(row.j, row.k), row.size(), 1.0);

@@ -1,7 +1,7 @@
 #include "pressure/smac.hpp"
 
 #include "base/events.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 
 #include <algorithm>
 
@@ -61,7 +61,7 @@ PetscErrorCode SmacSolver::set_up() {
 PetscErrorCode SmacSolver::solve(double dt, const Field &divergence, Field &, Field &increment) {
   PetscFunctionBeginUser;
   {
-    VerbScope scope(Verb::smac);
+    EventScope scope(Event::smac);
     scope.flops(flops_);
     const Int3 owned = domain_->cells();
     const auto packed = [&](int j, int k) { return values_.begin() + owned[0] * (j + std::ptrdiff_t(owned[1]) * k); };

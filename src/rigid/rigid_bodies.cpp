@@ -3,7 +3,7 @@
 #include "base/exact_sum.hpp"
 #include "base/one_line.hpp"
 #include "bodies/fill_phase.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,7 @@ void RigidBodies::for_faces(int a, int index, const Visit &visit) {
           for (int j = y.begin; j < y.end; ++j)
             for (int i = x.begin; i < x.end; ++i) {
               const Int3 local{i - own.begin[0], j - own.begin[1], k - own.begin[2]};
-              Real3 place = place_of_face(domain_, a, local[0], local[1], local[2]);
+              Real3 place = face_position(domain_, a, local[0], local[1], local[2]);
               place[0] += x.shift;
               place[1] += y.shift;
               place[2] += z.shift;
@@ -329,7 +329,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
     const int index = faces_.bodies[image].index, side = domain_.layout().begin[a] + cell[a] + high;
     Int3 face = cell;
     face[a] += high;
-    const Real3 place = place_of_face(domain_, a, face[0], face[1], face[2]);
+    const Real3 place = face_position(domain_, a, face[0], face[1], face[2]);
     if (domain_.is_wall(a) && (side == 0 || side == domain_.domain_cells()[a]))
       faces_.footprints.push_back({cell, a, high > 0, image, 2 * part});
     const PlacedBody *body = sources_[index].body.get();
@@ -347,7 +347,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
   for (const Segment &row : domain_.rows())
     for (int a = 0; a < dimension; ++a) {
       for (const int high : {0, 1}) {
-        faces_.find_beside(a, high > 0, row.j, row.k, &beside[high]);
+        faces_.find_bodies_beside(a, high > 0, row.j, row.k, &beside[high]);
         for (int &image : beside[high])
           if (image >= 0 && faces_.motions[faces_.bodies[image].motion].travels()) image = -1;
       }

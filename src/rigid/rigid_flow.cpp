@@ -14,7 +14,7 @@ RigidFlow::RigidFlow(Flow *flow, std::unique_ptr<RigidBodies> bodies) : flow_(*f
 PetscErrorCode RigidFlow::create(std::unique_ptr<PressureSolver> *solver) {
   PetscFunctionBeginUser;
   PetscCall(bodies_->find_faces(flow_.now.time, flow_.now.time));
-  if (flow_.spec.acm_of_the_paper()) PetscFunctionReturn(0);
+  if (flow_.spec.is_single_acm_step()) PetscFunctionReturn(0);
   const double accuracy = flow_.spec.pressure == PressureKind::acm ? 1 : 1e-6;
   auto obstacles = std::make_unique<ObstacleSolver>(flow_.domain, flow_.exchange, flow_.work, faces(), accuracy,
                                                     flow_.spec.acm_memory, std::move(*solver));
@@ -39,7 +39,7 @@ PetscErrorCode RigidFlow::carry(CarriedState *state) {
 PetscErrorCode RigidFlow::move_bodies(double time, double dt) {
   PetscFunctionBeginUser;
   if (!bodies_->travel()) PetscFunctionReturn(0);
-  VerbScope scope(Verb::rigid);
+  EventScope scope(Event::rigid);
   PetscCall(bodies_->find_faces(time, time - 0.5 * dt));
   if (obstacles_) obstacles_->update_faces(faces());
   PetscFunctionReturn(0);
@@ -63,7 +63,7 @@ PetscErrorCode RigidFlow::start() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RigidFlow::recall() { return move_bodies(flow_.now.time, flow_.now.dt); }
+PetscErrorCode RigidFlow::begin_resume() { return move_bodies(flow_.now.time, flow_.now.dt); }
 
 PetscErrorCode RigidFlow::resume() {
   PetscFunctionBeginUser;
@@ -109,8 +109,8 @@ PetscErrorCode RigidFlow::close_rate(const MomentumRate &rate) {
   const double viscosity = flow_.fluid.kinematic_viscosity();
   PetscFunctionBeginUser;
   if (flow_.staggered())
-    see_rigid_surfaces(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
-                       flow_.now.velocity, rate.field, flow_.slope ? &flow_.slope : nullptr);
+    apply_rigid_surfaces(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
+                         flow_.now.velocity, rate.field, flow_.slope ? &flow_.slope : nullptr);
   else
     apply_rigid_surfaces_euler(flow_.domain, faces(), viscosity, rate.viscosity_included, flow_.now.time, rate.step.dt,
                                flow_.now.velocity, rate.field);
@@ -133,13 +133,13 @@ PetscErrorCode RigidFlow::begin_correction(Field &divergence) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RigidFlow::see_increment(const Field &increment) {
+PetscErrorCode RigidFlow::observe_increment(const Field &increment) {
   PetscFunctionBeginUser;
   impulse_->add_increment(increment, obstacles_ != nullptr);
   PetscFunctionReturn(0);
 }
 
-// An increment that is a formula was not passed to see_increment(); the pressure contains it now.
+// An increment that is a formula was not passed to observe_increment(); the pressure contains it now.
 PetscErrorCode RigidFlow::end_projection(double, const Field &, Field &increment) {
   PetscFunctionBeginUser;
   if (!increment) impulse_->set_pressure(flow_.now.pressure);
@@ -149,7 +149,7 @@ PetscErrorCode RigidFlow::end_projection(double, const Field &, Field &increment
 // Cut faces get their part of the increment, faces inside the velocity of their body.
 PetscErrorCode RigidFlow::correct(double time, double dt, const Field &increment, Field &velocity) {
   PetscFunctionBeginUser;
-  if (!flow_.spec.acm_of_the_paper())
+  if (!flow_.spec.is_single_acm_step())
     correct_cut_faces(flow_.domain, faces(), dt / flow_.fluid.density, increment, velocity);
   PetscCall(prescribe_velocity(time, velocity));
   PetscFunctionReturn(0);

@@ -23,7 +23,7 @@ public:
   std::size_t bytes() const override { return bodies_->bytes() + (impulse_ ? impulse_->bytes() : 0); }
   PetscErrorCode carry(CarriedState *state) override;
   PetscErrorCode start() override;
-  PetscErrorCode recall() override;
+  PetscErrorCode begin_resume() override;
   PetscErrorCode resume() override;
   PetscErrorCode prescribe_velocity(double time, Field &velocity) override;
   double shortest_period() const override { return faces().shortest_period(); }
@@ -33,7 +33,7 @@ public:
   PetscErrorCode close_rate(const MomentumRate &rate) override;
   PetscErrorCode constrain(double dt) override;
   PetscErrorCode begin_correction(Field &divergence) override;
-  PetscErrorCode see_increment(const Field &increment) override;
+  PetscErrorCode observe_increment(const Field &increment) override;
   PetscErrorCode correct(double time, double dt, const Field &increment, Field &velocity) override;
   PetscErrorCode end_projection(double dt, const Field &divergence, Field &increment) override;
   PetscErrorCode position_phases(double time, std::vector<Phase> *phases) override;

@@ -17,7 +17,7 @@ struct LinkEnd {
 };
 LinkEnd link_end(const Box &box, const RigidFaces &faces, int a, Int3 face, int link) {
   const int d = link / 2, step = link % 2 ? 1 : -1, N = box.domain_cells()[d];
-  LinkEnd end{0, place_of_face(box, a, face[0], face[1], face[2])};
+  LinkEnd end{0, face_position(box, a, face[0], face[1], face[2])};
   const double least = (d == a ? 0 : 0.5) - 0.5 * N, neighbour = end.place[d] + step;
   if (!box.is_wall(d) && neighbour < least) end.place[d] += N;
   if (!box.is_wall(d) && neighbour > least + N - 1) end.place[d] -= N;
@@ -41,7 +41,7 @@ void RigidImpulse::find_contacts() {
   std::array<std::vector<int>, 2> beside{std::vector<int>(cells), std::vector<int>(cells)};
   for (const Segment &row : domain_.rows())
     for (int d = 0; d < domain_.dimension(); ++d) {
-      for (const int high : {0, 1}) faces_.find_beside(d, high > 0, row.j, row.k, &beside[high]);
+      for (const int high : {0, 1}) faces_.find_bodies_beside(d, high > 0, row.j, row.k, &beside[high]);
       for (int i = 0; i < cells; ++i)
         for (const int high : {0, 1})
           if (beside[0][i] != beside[1][i] && beside[high][i] >= 0)
@@ -87,7 +87,7 @@ double RigidImpulse::velocity_before(int a, int image, const Int3 &face) const {
   const RigidBody &body = faces_.bodies[image];
   const RigidMotion &motion = faces_.motions[body.motion];
   const Real3 then = motion.shift(time_), now = motion.shift(time_ + dt_);
-  Real3 place = place_of_face(domain_, a, face[0], face[1], face[2]);
+  Real3 place = face_position(domain_, a, face[0], face[1], face[2]);
   for (int d = 0; d < domain_.dimension(); ++d) place[d] += (now[d] - then[d]) / domain_.spacing()[d];
   return faces_.velocity(a, body, place, domain_.spacing(), motion.of_velocity.at(time_), motion.of_rotation.at(time_));
 }
@@ -135,7 +135,7 @@ void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_s
       double rate = (after[i] - before[i]) / dt_;
       double &missing = missing_rate_[a][index(a, *cut)];
       if (motion_of(cut->body).travels()) {
-        rate -= rate_in_body_frame(domain_, faces_, *cut, a, place_of_face(domain_, a, i, j, k), time_, dt_, before + i,
+        rate -= rate_in_body_frame(domain_, faces_, *cut, a, face_position(domain_, a, i, j, k), time_, dt_, before + i,
                                    strides(velocity[a]));
         if (fluid_.inertia) missing = curved_advection(a, *cut, j, k, velocity);
       }
@@ -211,7 +211,7 @@ PetscErrorCode RigidImpulse::sum(std::vector<double> *total) const {
   for (std::size_t n = 0; n < contacts_.size(); ++n) {
     // Forces along d have no torque from arms along d, so the place of the low face suffices.
     const Contact &at = contacts_[n];
-    add(at.body, at.d, place_of_face(domain_, at.d, at.i, at.j, at.k),
+    add(at.body, at.d, face_position(domain_, at.d, at.i, at.j, at.k),
         at.weight * pressure_[n] * domain_.cell_volume() / domain_.spacing()[at.d], &sums);
   }
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
@@ -223,7 +223,7 @@ PetscErrorCode RigidImpulse::sum(std::vector<double> *total) const {
   for_moving_faces([&](int a, int i, int j, int k, int image) {
     const RigidBody &body = faces_.bodies[image];
     const RigidMotion &motion = motion_of(image);
-    const Real3 place = place_of_face(domain_, a, i, j, k), r = RigidFaces::arm(body, place, domain_.spacing());
+    const Real3 place = face_position(domain_, a, i, j, k), r = RigidFaces::arm(body, place, domain_.spacing());
     const double fluid = mass * volume_of_face(domain_, a, side_of_face(domain_, a, i, j, k)),
                  rate = covered_rate_[at++];
     const auto body_velocity = [&](double along, double turning) {
@@ -246,7 +246,7 @@ PetscErrorCode RigidImpulse::sum(std::vector<double> *total) const {
 // and the acceleration of the body; (28d), (28e).
 PetscErrorCode RigidImpulse::measure(std::vector<RigidLoad> *loads) const {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::rigid);
+  EventScope scope(Event::rigid);
   std::vector<double> total;
   PetscCall(sum(&total));
   loads->assign(faces_.count, {});

@@ -9,9 +9,9 @@
 #include <algorithm>
 
 namespace eulastic {
-void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
-                        double dt, const Field &velocity, Field &rate, Field *slope) {
-  VerbScope scope(Verb::rigid);
+void apply_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
+                          double dt, const Field &velocity, Field &rate, Field *slope) {
+  EventScope scope(Event::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
     double *out = rate[a].row(j, k), *m = slope ? (*slope)[a].row(j, k) : nullptr;
@@ -20,7 +20,7 @@ void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosit
       const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
       if (faces.motions[faces.bodies[cut->body].motion].travels())
-        out[cut->i] += (1 - cut->share) * rate_in_body_frame(box, faces, *cut, a, place_of_face(box, a, cut->i, j, k),
+        out[cut->i] += (1 - cut->share) * rate_in_body_frame(box, faces, *cut, a, face_position(box, a, cut->i, j, k),
                                                              time, dt, u + cut->i, strides(velocity[a]));
       if (m) m[cut->i] *= cut->share;
     }
@@ -36,7 +36,7 @@ void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosit
 // With WENO5 a cut face downstream of a body would take its difference from inside, across the kink of the velocity.
 void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, double epsilon, double scale,
                           const Field &velocity, Field *advection, Field &rate) {
-  VerbScope scope(Verb::rigid);
+  EventScope scope(Event::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const Strides s = strides(velocity[a]);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
@@ -64,7 +64,7 @@ void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, 
 
 void apply_rigid_surfaces_euler(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
                                 double dt, const Field &velocity, Field &velocity_star) {
-  VerbScope scope(Verb::rigid);
+  EventScope scope(Event::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *u = velocity[a].row(j, k);
     double *out = velocity_star[a].row(j, k);
@@ -96,7 +96,7 @@ void set_cut_face_values(const Box &box, const RigidFaces &faces, const std::vec
 }
 
 void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, Field &velocity) {
-  VerbScope scope(Verb::rigid);
+  EventScope scope(Event::rigid);
   for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     double *out = velocity[a].row(j, k);
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run) {
@@ -105,13 +105,13 @@ void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, F
       const double of_velocity = motion.of_velocity.at(time), of_rotation = motion.of_rotation.at(time);
       for (int i = std::max(run->begin, 0); i < std::min(run->end, box.points_end(0, a == 0)); ++i)
         out[i] = motion.moves()
-                     ? faces.velocity(a, body, place_of_face(box, a, i, j, k), box.spacing(), of_velocity, of_rotation)
+                     ? faces.velocity(a, body, face_position(box, a, i, j, k), box.spacing(), of_velocity, of_rotation)
                      : 0;
     }
   });
 }
 
-void open_faces(const Box &box, const RigidFaces &faces, Field &field) {
+void scale_open_faces(const Box &box, const RigidFaces &faces, Field &field) {
   for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
       if (owned(box, a, cut->i)) field[a].row(j, k)[cut->i] *= cut->open;
@@ -129,7 +129,7 @@ void clear_rigid_faces(const Box &box, const RigidFaces &faces, Field &field) {
 
 void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const Field &increment,
                        Field &velocity) {
-  VerbScope scope(Verb::rigid);
+  EventScope scope(Event::rigid);
   const double cut_faces = for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *q = increment[0].row(j, k), factor = dt_over_density / box.spacing()[a];
     double *u = velocity[a].row(j, k);
@@ -183,7 +183,7 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
 PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
                                          const Field &velocity, double *dissipation) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::rigid);
+  EventScope scope(Event::rigid);
   const Real3 &h = domain.spacing();
   ExactSums sums(1);
   const double cut_faces = for_rigid_rows(domain, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
@@ -195,7 +195,7 @@ PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces 
       const double *u = velocity[a].row(j, k) + i;
       const RigidBody &body = faces.bodies[cut->body];
       const RigidMotion &motion = faces.motions[body.motion];
-      const double of_body = faces.velocity(a, body, place_of_face(domain, a, i, j, k), h, motion.of_velocity.at(time),
+      const double of_body = faces.velocity(a, body, face_position(domain, a, i, j, k), h, motion.of_velocity.at(time),
                                             motion.of_rotation.at(time));
       const Viscous rates = viscous_rates(domain, faces, *cut, a, time, u, strides(velocity[a]));
       sums.add(0, volume * (*u - of_body) * (rates.regular - rates.cut));

@@ -21,8 +21,8 @@ void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, 
                           const Field &velocity, Field *advection, Field &rate);
 /// Completes `rate`, which contains `included` of the viscosity: cut faces get (28), scaled by their share, and beside
 /// travelling bodies (28b) over a step of dt; faces inside get 0. `slope` (may be null) is scaled by the share, too.
-void see_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
-                        double dt, const Field &velocity, Field &rate, Field *slope);
+void apply_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
+                          double dt, const Field &velocity, Field &rate, Field *slope);
 /// Does the same for v* = v + dt rate, (7), without travelling bodies.
 void apply_rigid_surfaces_euler(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
                                 double dt, const Field &velocity, Field &velocity_star);
@@ -37,7 +37,7 @@ void impose_rigid_motion(const Box &box, const RigidFaces &faces, double time, F
 void correct_cut_faces(const Box &box, const RigidFaces &faces, double dt_over_density, const Field &increment,
                        Field &velocity);
 /// Multiplies owned cut faces by the factor with which increments act on them, and sets faces inside to 0.
-void open_faces(const Box &box, const RigidFaces &faces, Field &field);
+void scale_open_faces(const Box &box, const RigidFaces &faces, Field &field);
 /// Sets owned faces inside bodies to 0.
 void clear_rigid_faces(const Box &box, const RigidFaces &faces, Field &field);
 /// Averages over a step, (28c): the velocity of cut faces, and the factors of every motion.

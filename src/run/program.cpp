@@ -52,7 +52,8 @@ int act(ParseResult &parsed) {
     parsed.error =
         "-load_balance: -check_only on more than one rank assumes equal parts, whereas the cuts of a run follow from "
         "its fields; accepted: -load_balance false with -check_only";
-  if (parsed.error.empty()) parsed.error = parsed.message.empty() ? Domain::why_not(parsed.config.grid, ranks) : "";
+  if (parsed.error.empty())
+    parsed.error = parsed.message.empty() ? Domain::refusal_reason(parsed.config.grid, ranks) : "";
   if (!parsed.error.empty()) {
     print_error(parsed.error);
     return exit_usage;

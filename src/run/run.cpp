@@ -72,7 +72,7 @@ PetscErrorCode start_threads(int threads, std::string *line, std::string *refusa
   *refusal = waiting.error;
   if (!refusal->empty()) PetscFunctionReturn(0);
   set_threads(threads);
-  ThreadTeam::of_rank().set_waiting(waiting.how);
+  ThreadTeam::team_of_rank().set_waiting(waiting.how);
   print_warning(run_communicator(), waiting.warning);
   *line = waiting.line;
   PetscFunctionReturn(0);
@@ -184,7 +184,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
     if (run->stop) break;
     step_begin = MPI_Wtime();
     double looked = 0;
-    const auto timed = [&](PetscErrorCode (Outputs::*see)(double)) -> Look {
+    const auto timed = [&](PetscErrorCode (Outputs::*see)(double)) -> Observer {
       if (!run->outputs.row_waits()) return {};
       return [&, see] {
         const double begin = MPI_Wtime();

@@ -57,7 +57,7 @@ public:
       report.line("warning",
                   "needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
                   double(std::numeric_limits<PetscInt>::max()));
-    if (ranks > 1 && config_.method.pressure == PressureKind::acm && !config_.method.acm_of_the_paper() &&
+    if (ranks > 1 && config_.method.pressure == PressureKind::acm && !config_.method.is_single_acm_step() &&
         config_.method.acm_coarse)
       report.line("V-cycle", "%s", Multigrid::shares(Domain::planned(config_.grid, ranks)).c_str());
     const double bytes = bytes_per_rank(config_, parts);
@@ -181,7 +181,7 @@ public:
     if (config_.time.step > 0) {
       dt = config_.time.step;
       name = "-time_step";
-      if (const char *broken = limits.broken(dt))
+      if (const char *broken = limits.exceeded_limit(dt))
         report.line("warning", "-time_step %g exceeds the %s limit", dt, broken);
     }
     if (!std::isfinite(dt)) dt = config_.time.end, name = "-time_end: nothing limits it";

@@ -8,8 +8,8 @@
 
 namespace eulastic {
 
-/// Derived numbers of a parsed `config` that fits on `ranks` ranks (Domain::why_not): grid, bodies, estimated flow,
-/// dimensionless numbers, limits of the time step, memory. One `name: value` a line.
+/// Derived numbers of a parsed `config` that fits on `ranks` ranks (Domain::refusal_reason): grid, bodies, estimated
+/// flow, dimensionless numbers, limits of the time step, memory. One `name: value` a line.
 std::string check_report(const Config &config, int ranks);
 
 }  // namespace eulastic

@@ -8,7 +8,7 @@ std::string Config::why_no_boxes(const SpeciesSpec &spec) const {
   if (spec.law == Law::rigid || spec.material().anchored) return "soft bodies that are free to move";
   if (!has_box) return "-" + spec.name + "_shape sphere, biconcave or ellipsoid";
   if (!body_series) return "-body_series true";
-  if (!method.boxes_bodies()) return "-method fast and -interface_scheme plic";
+  if (!method.allows_boxed_bodies()) return "-method fast and -interface_scheme plic";
   return {};
 }
 

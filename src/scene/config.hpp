@@ -3,10 +3,10 @@
 
 #include "adhesion/adhesion_pair.hpp"
 #include "bodies/placement.hpp"
+#include "field/boundaries.hpp"
 #include "field/material.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "field/phase.hpp"
-#include "field/sides.hpp"
 #include "flow/initial_velocity.hpp"
 #include "grid/box.hpp"
 #include "parts/method.hpp"
@@ -28,14 +28,14 @@ struct BoundaryControl {
   bool bounded(int d) const {
     return both[d] != BoundaryChoice::periodic || (side[d][0] != SideChoice::same && side[d][1] != SideChoice::same);
   }
-  SideKind kind(int d, int high) const {
+  BoundaryKind kind(int d, int high) const {
     if (side[d][high] == SideChoice::same)
-      return both[d] == BoundaryChoice::symmetry ? SideKind::symmetry : SideKind::wall;
-    static_assert(int(SideChoice::outflow) - 1 == int(SideKind::outflow), "the same order");
-    return static_cast<SideKind>(static_cast<int>(side[d][high]) - 1);
+      return both[d] == BoundaryChoice::symmetry ? BoundaryKind::symmetry : BoundaryKind::wall;
+    static_assert(int(SideChoice::outflow) - 1 == int(BoundaryKind::outflow), "the same order");
+    return static_cast<BoundaryKind>(static_cast<int>(side[d][high]) - 1);
   }
-  bool is(SideKind wanted, int d, int high) const { return bounded(d) && kind(d, high) == wanted; }
-  bool is_wall(int d, int high) const { return is(SideKind::wall, d, high); }
+  bool is(BoundaryKind wanted, int d, int high) const { return bounded(d) && kind(d, high) == wanted; }
+  bool is_wall(int d, int high) const { return is(BoundaryKind::wall, d, high); }
 };
 
 /// What the options of one wall, inflow or pressure boundary say. `velocity`, `flow_rate` and `pressure` are a number
@@ -117,7 +117,7 @@ struct Config {
   GridSpec grid;
   BoundaryControl boundary;
   std::array<std::array<OpeningSpec, 2>, 3> openings;
-  BoxSides sides;  ///< and grid.boundary: after parsing, as `boundary` and `openings` say
+  BoundaryConditions sides;  ///< and grid.boundary: after parsing, as `boundary` and `openings` say
   std::array<std::array<OpenPart, 2>, 3> open_parts;  ///< by validate()
   Fluid fluid;
   InitialFlow initial;

@@ -1,7 +1,7 @@
 #include "scene/flow_scale.hpp"
 
 #include "bodies/shapes.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "scene/lumens.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ bool is_vessel_of_file(const Config &config, std::size_t s) {
 }
 
 // The largest velocity of a profile, whose mean is 1.
-double largest_of_mean(const Side &side) {
+double largest_of_mean(const BoundaryCondition &side) {
   if (!side.profile || side.profile->empty()) return 1;
   double most = 0;
   for (const double shape : *side.profile) most = std::max(most, std::fabs(shape));
@@ -69,7 +69,7 @@ private:
     for (int d = 1; d < dimension_; ++d)
       if (std::pair{std::fabs(force[d]), length[d]} > std::pair{std::fabs(force[axis]), length[axis]}) axis = d;
     for (int d = dimension_ - 1; d >= 0; --d)
-      if (config_.grid.open[d][0] || config_.sides[d][0].kind == SideKind::inflow) axis = d;
+      if (config_.grid.open[d][0] || config_.sides[d][0].kind == BoundaryKind::inflow) axis = d;
     return axis;
   }
 
@@ -149,7 +149,7 @@ private:
         free -= count_bodies(config_, s).total() / box;
     for (int d = 0; d < dimension_ && free > 0; ++d)
       for (const int high : {0, 1}) {
-        if (config_.sides[d][high].kind != SideKind::inflow) continue;
+        if (config_.sides[d][high].kind != BoundaryKind::inflow) continue;
         const double shape = largest_of_mean(config_.sides[d][high]);
         const double speed = 2 * shape * largest_inflow(config_, d, high) / free;
         scale_.speed[d] = std::max(scale_.speed[d], speed);

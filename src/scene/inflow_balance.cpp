@@ -66,7 +66,7 @@ std::string check_inflow_balance(const Config &config) {
   std::string names;
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2; ++high) {
-      if (config.sides[d][high].kind != SideKind::inflow) continue;
+      if (config.sides[d][high].kind != BoundaryKind::inflow) continue;
       inflows.push_back({&config.sides[d][high].given, area_of_side(config, d)});
       names += (names.empty() ? "-boundary_" : ", -boundary_") + side_name(d, high);
     }

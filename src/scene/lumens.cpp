@@ -28,14 +28,14 @@ std::array<double, 2> given_flow(const Config &config, int d, int high) {
 
 // A single open boundary carries the sum of all inflow; with several the split is unknown.
 bool flow_through(const Config &config, int d, int high, std::array<double, 2> *range) {
-  if (config.sides[d][high].kind == SideKind::inflow) {
+  if (config.sides[d][high].kind == BoundaryKind::inflow) {
     *range = given_flow(config, d, high);
     return true;
   }
   int inlets = 0, outlets = 0;
   *range = {};
   for_crossed_sides(config, [&](int e, int end) {
-    const bool inlet = config.sides[e][end].kind == SideKind::inflow;
+    const bool inlet = config.sides[e][end].kind == BoundaryKind::inflow;
     (inlet ? inlets : outlets) += config.open_parts[e][end].share > 0;
     if (!inlet) return;
     const auto flow = given_flow(config, e, end);
@@ -56,8 +56,8 @@ double reynolds_number(const Config &config, int d, int high) {
 
 std::string side_line(const Config &config, int d, int high) {
   const OpenPart &part = config.open_parts[d][high];
-  const SideKind kind = config.sides[d][high].kind;
-  const char *what = kind == SideKind::inflow ? "inflow" : kind == SideKind::pressure ? "pressure" : "outflow";
+  const BoundaryKind kind = config.sides[d][high].kind;
+  const char *what = kind == BoundaryKind::inflow ? "inflow" : kind == BoundaryKind::pressure ? "pressure" : "outflow";
   std::string line = "boundary " + side_name(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
                      number(part.area) + " of " + number(area_of_side(config, d));
   if (part.lumens > 1) line += ", " + std::to_string(part.lumens) + " lumens, the widest";

@@ -3,7 +3,7 @@
 #include "base/one_line.hpp"
 #include "bodies/shapes.hpp"
 #include "boxes/free_bodies.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "grid/domain.hpp"
 #include "io/fail_together.hpp"
 #include "solver/scheme.hpp"
@@ -66,22 +66,23 @@ double fields(const Config &config) {
   }
   const bool rigid = std::any_of(config.species.begin(), config.species.end(),
                                  [](const SpeciesSpec &spec) { return spec.law == Law::rigid; });
-  const Solver::Contents contents{opens(config.sides), !config.species.empty(), tension, membranes, rigid};
+  const Solver::Contents contents{has_open_boundary(config.sides), !config.species.empty(), tension, membranes, rigid};
   double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, contents);
   if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
   if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
-  if (method.pressure == PressureKind::acm && !method.acm_of_the_paper()) {
+  if (method.pressure == PressureKind::acm && !method.is_single_acm_step()) {
     sum += method.acm_memory;
     if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
   }
   const bool travels = std::any_of(config.species.begin(), config.species.end(),
                                    [&](const SpeciesSpec &spec) { return spec.travels(dimension); });
-  if (travels) sum += dimension;            // which faces are inside; twice that beside bodies of a file
-  if (rigid && !method.acm_of_the_paper())  // its own increments, for those of the sweeps, which then need scratch
+  if (travels) sum += dimension;              // which faces are inside; twice that beside bodies of a file
+  if (rigid && !method.is_single_acm_step())  // its own increments, for those of the sweeps, which then need scratch
     sum += method.pressure == PressureKind::acm ? method.acm_coarse && method.acm_memory > 0 : method.acm_memory;
   for (const auto &pair : config.sides)
-    for (const Side &side : pair) sum += side.kind == SideKind::pressure && side.load.exists();  // its response
-  if (method.staggered() && config.fluid.inertia) sum += dimension;                              // of the step before
+    for (const BoundaryCondition &side : pair)
+      sum += side.kind == BoundaryKind::pressure && side.load.exists();  // its response
+  if (method.staggered() && config.fluid.inertia) sum += dimension;      // of the step before
   if (config.species.empty()) return sum;
   double tensor = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
@@ -102,7 +103,7 @@ double fields(const Config &config) {
   if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
   if (contrast.exists() && !rigid && method.viscous == ViscousScheme::rkl)  // ImplicitViscosity
     sum += 5 * dimension + 2 + (dimension == 2 ? 1 : 0.4);
-  if (Scheme::expects_pressure(method, contrast, travels)) sum += 1;  // pressure before
+  if (Scheme::extrapolates_pressure(method, contrast, travels)) sum += 1;  // pressure before
   return sum;
 }
 

@@ -99,7 +99,7 @@ private:
   int count(int which) const { return window_.size[along_[which]]; }
   bool wraps(int which) const { return config_.grid.boundary[along_[which]] == Boundary::periodic; }
   // Whether the lumen continues beyond the end of the plane as its mirror image.
-  bool mirrors(int which, int high) const { return config_.sides[along_[which]][high].kind != SideKind::wall; }
+  bool mirrors(int which, int high) const { return config_.sides[along_[which]][high].kind != BoundaryKind::wall; }
 
   // Finds for every cell the length, in cells, of the open piece of its line; keeps the shorter one of both directions.
   void find_chords(int which) {
@@ -190,7 +190,7 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
   bool way_out = false;
   for_crossed_sides(config, [&](int d, int high) {
     const std::string side = side_name(d, high);
-    if (config.sides[d][high].kind != SideKind::inflow) {
+    if (config.sides[d][high].kind != BoundaryKind::inflow) {
       way_out = way_out || !closed[d][high];
       outlet = side;
       return;
@@ -208,7 +208,7 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
            "must balance; accepted: -boundary_" +
            covered + "_flow_rate";
   bool comes_in = false;
-  for_crossed_sides(config, [&](int d, int high) { comes_in |= config.sides[d][high].kind == SideKind::inflow; });
+  for_crossed_sides(config, [&](int d, int high) { comes_in |= config.sides[d][high].kind == BoundaryKind::inflow; });
   if (comes_in && !outlet.empty() && !way_out)
     return "-boundary_" + outlet +
            ": rigid bodies cover all boundaries through which the inflow could leave; accepted: an open boundary";

@@ -16,7 +16,7 @@ template <class Visit>
 void for_crossed_sides(const Config &config, Visit visit) {
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2; ++high)
-      if (volume_crosses(config.sides[d][high].kind)) visit(d, high);
+      if (fluid_crosses(config.sides[d][high].kind)) visit(d, high);
 }
 
 }  // namespace eulastic

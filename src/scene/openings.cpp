@@ -3,7 +3,7 @@
 #include "base/exact_sum.hpp"
 #include "base/number_rows.hpp"
 #include "base/rank_zero.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "io/hdf5_input.hpp"
 #include "io/option_values.hpp"
 #include "scene/inflow_balance.hpp"
@@ -95,7 +95,7 @@ std::size_t cells_of_side(const Config &config, int d) {
 }
 
 // Scales a profile to the mean 1; returns its former mean.
-double make_mean_one(SideProfile *profile) {
+double make_mean_one(InflowProfile *profile) {
   double sum = 0;
   for (const double value : *profile) sum += value;
   const double mean = sum / double(profile->size());
@@ -103,7 +103,7 @@ double make_mean_one(SideProfile *profile) {
   return mean;
 }
 
-std::string read_profile(const Config &config, int d, int high, SideProfile *profile, double *mean) {
+std::string read_profile(const Config &config, int d, int high, InflowProfile *profile, double *mean) {
   const OpeningSpec &spec = config.openings[d][high];
   static const RowFormat format{"uniform, developed, or a file of numbers", {}, {}};
   std::string text, wrong, file, dataset;
@@ -135,7 +135,7 @@ std::string read_profile(const Config &config, int d, int high, SideProfile *pro
   return {};
 }
 
-std::string resolve_wall(const Config &config, int d, int high, Side *side) {
+std::string resolve_wall(const Config &config, int d, int high, BoundaryCondition *side) {
   const OpeningSpec &spec = config.openings[d][high];
   side->motion = {{}, spec.frequency, spec.phase};
   if (spec.velocity.empty()) return {};
@@ -145,17 +145,17 @@ std::string resolve_wall(const Config &config, int d, int high, Side *side) {
          "; accepted: for a wall 3 numbers, separated by commas";
 }
 
-std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
+std::string resolve_inflow(const Config &config, int d, int high, BoundaryCondition *side) {
   const OpeningSpec &spec = config.openings[d][high];
   const std::string name = "-boundary_" + side_name(d, high);
   if (!spec.velocity.empty() && !spec.flow_rate.empty())
     return name + "_flow_rate: given beside " + name + "_velocity; accepted: one of them";
-  SideProfile profile;
+  InflowProfile profile;
   double mean = 1;
   if (spec.from_file())
     if (std::string wrong = read_profile(config, d, high, &profile, &mean); !wrong.empty())
       return name + "_profile: " + wrong;
-  side->profile = std::make_shared<const SideProfile>(std::move(profile));
+  side->profile = std::make_shared<const InflowProfile>(std::move(profile));
   const bool flow = !spec.flow_rate.empty();
   if (!flow && spec.velocity.empty() && !spec.from_file())
     return name + "_velocity: must be given, or " + name + "_flow_rate; accepted: a number, or a table";
@@ -177,7 +177,7 @@ std::string resolve_inflow(const Config &config, int d, int high, Side *side) {
   return {};
 }
 
-std::string resolve_inlet_generator(const Config &config, int d, int high, Side *side) {
+std::string resolve_inlet_generator(const Config &config, int d, int high, BoundaryCondition *side) {
   const double length = config.openings[d][high].generator_length, h = config.grid.length[d] / config.grid.cells[d];
   constexpr int least = 8, left = 8;  // cells
   if (length == 0) return {};
@@ -218,16 +218,16 @@ std::string resolve_load(const OpeningSpec &spec, const std::string &name, Outle
 std::string resolve_openings(Config *config) {
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2; ++high) {
-      Side &side = config->sides[d][high];
+      BoundaryCondition &side = config->sides[d][high];
       const bool bounded = config->boundary.bounded(d);
-      side.kind = bounded ? config->boundary.kind(d, high) : SideKind::wall;
+      side.kind = bounded ? config->boundary.kind(d, high) : BoundaryKind::wall;
       config->grid.open[d][high] = bounded && is_open(side.kind);
-      if (side.kind == SideKind::inflow)
+      if (side.kind == BoundaryKind::inflow)
         for (const auto resolve : {resolve_inflow, resolve_inlet_generator})
           if (std::string wrong = resolve(*config, d, high, &side); !wrong.empty()) return wrong;
-      if (side.kind == SideKind::wall)
+      if (side.kind == BoundaryKind::wall)
         if (std::string wrong = resolve_wall(*config, d, high, &side); !wrong.empty()) return wrong;
-      if (side.kind != SideKind::pressure) continue;
+      if (side.kind != BoundaryKind::pressure) continue;
       const OpeningSpec &spec = config->openings[d][high];
       side.given = {0, 0, 0, {}};
       const std::string name = "-boundary_" + side_name(d, high), option = name + "_pressure";
@@ -237,7 +237,7 @@ std::string resolve_openings(Config *config) {
           !wrong.empty())
         return wrong;
     }
-  return opens(config->sides) ? std::string() : check_inflow_balance(*config);
+  return has_open_boundary(config->sides) ? std::string() : check_inflow_balance(*config);
 }
 
 // The profile of the inflow: 0 in rigid bodies; a developed one is the steady flow along a pipe of that section, -lap u
@@ -266,8 +266,8 @@ Beyond beyond(const Config &config, int e, int i, bool high) {
   if (n == 1 && config.grid.boundary[e] == Boundary::periodic) return {};
   if (config.grid.boundary[e] == Boundary::periodic) return {true, false, (next + n) % n};
   if (next >= 0 && next < n) return {true, false, next};
-  const SideKind kind = config.sides[e][high].kind;
-  return {false, kind == SideKind::wall || kind == SideKind::inflow, 0};
+  const BoundaryKind kind = config.sides[e][high].kind;
+  return {false, kind == BoundaryKind::wall || kind == BoundaryKind::inflow, 0};
 }
 
 // Cells of a boundary that no rigid body covers, and their links (RigidFaces::Cut) low, high along a, then b; 0: a
@@ -324,7 +324,7 @@ PetscErrorCode measure_open_part(const Domain &domain, const std::vector<Phase> 
                                  double *part) {
   PetscFunctionBeginUser;
   ExactSums covered(1);
-  for_points(domain.cells_at(d, high, 1), [&](int i, int j, int k) {
+  for_points(domain.boundary_cells(d, high, 1), [&](int i, int j, int k) {
     double solid = 0;
     for (const Phase &phase : phases)
       if (phase.material.is_rigid()) solid += phase.fraction[0](i, j, k);
@@ -376,7 +376,7 @@ PetscErrorCode assemble(const Config &config, int d, const OpenCells &cells, Mat
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode develop(const Config &config, int d, const OpenCells &open, SideProfile *profile) {
+PetscErrorCode develop(const Config &config, int d, const OpenCells &open, InflowProfile *profile) {
   const SidePlane plane(d);
   const PetscInt cells = PetscInt(config.grid.cells[plane.a]) * config.grid.cells[plane.b];
   MatHandle matrix;
@@ -409,16 +409,16 @@ PetscErrorCode develop(const Config &config, int d, const OpenCells &open, SideP
 }  // namespace
 
 PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const RigidFaces *rigid,
-                              const std::vector<Phase> &phases, BoxSides *sides, std::string *wrong) {
+                              const std::vector<Phase> &phases, BoundaryConditions *sides, std::string *wrong) {
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; ++d)
     for (const bool high : {false, true}) {
-      Side &side = (*sides)[d][high];
+      BoundaryCondition &side = (*sides)[d][high];
       const bool developed = config.openings[d][high].profile == "developed";
-      if (side.kind != SideKind::inflow || !(developed || rigid)) continue;
+      if (side.kind != BoundaryKind::inflow || !(developed || rigid)) continue;
       OpenCells open;
       PetscCall(find_open_cells(config, domain, rigid, d, high, &open));
-      SideProfile profile;
+      InflowProfile profile;
       if (developed) PetscCall(develop(config, d, open, &profile));
       if (profile.empty() && side.profile) profile = *side.profile;
       if (profile.empty()) profile.assign(open.all.size() / OpenCells::values, 1);
@@ -433,7 +433,7 @@ PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const 
       double part = 1;
       if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(domain, phases, d, high, &part));
       for (double &value : profile) value *= part * double(profile.size()) / sum;
-      side.profile = std::make_shared<const SideProfile>(std::move(profile));
+      side.profile = std::make_shared<const InflowProfile>(std::move(profile));
     }
   PetscFunctionReturn(0);
 }

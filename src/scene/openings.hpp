@@ -17,6 +17,6 @@ std::string resolve_openings(Config *config);
 /// plane that every rank solves to round-off; it is uniform without walls. Collective; `wrong`: an error of one line,
 /// or unchanged.
 PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const RigidFaces *rigid,
-                              const std::vector<Phase> &phases, BoxSides *sides, std::string *wrong);
+                              const std::vector<Phase> &phases, BoundaryConditions *sides, std::string *wrong);
 
 }  // namespace eulastic

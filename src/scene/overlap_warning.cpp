@@ -1,7 +1,7 @@
 #include "base/one_line.hpp"
 #include "scene/scene_warnings.hpp"
 
-#include "base/deliver.hpp"
+#include "base/send_to_ranks.hpp"
 #include "bodies/near_places.hpp"
 #include "bodies/overlap.hpp"
 #include "bodies/shapes.hpp"
@@ -84,7 +84,7 @@ PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, const Cell
       records.push_back({label[s] + body, with});
       owners.push_back(BodyRange::owner(label[s] + body - 1, label.back() - 1, ranks));
     }
-  PetscCall(deliver(comm, owners, &records));
+  PetscCall(send_to_ranks(comm, owners, &records));
   double cell = std::ldexp(1.0, -30);
   for (int d = 0; d < (config.grid.cells[2] == 1 ? 2 : 3); ++d) cell *= config.grid.length[d] / config.grid.cells[d];
   std::map<int, SharedVolume> sums;
@@ -117,7 +117,7 @@ PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels,
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
   for (const int label : *labels) owners.push_back(BodyRange::owner(label - 1, bodies, ranks));
-  PetscCall(deliver(comm, owners, labels));
+  PetscCall(send_to_ranks(comm, owners, labels));
   *count = static_cast<long>(std::set<int>(labels->begin(), labels->end()).size());
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 1, MPI_LONG, MPI_SUM, comm));
   PetscFunctionReturn(0);
@@ -156,7 +156,7 @@ PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *wa
   GridSpec spec = config.grid;
   spec.processors = {};
   spec.starts = {};
-  const bool share = Domain::why_not(spec, ranks).empty();
+  const bool share = Domain::refusal_reason(spec, ranks).empty();
   const Domain domain = Domain::planned(spec, share ? ranks : 1);
   const Layout box = share || rank == 0 ? domain.split().box_of(rank, spec, 0).layout() : Layout{};
   std::vector<Places> near(config.species.size());

@@ -1,7 +1,7 @@
 #include "scene/rank_work.hpp"
 
-#include "base/deliver.hpp"
 #include "base/one_line.hpp"
+#include "base/send_to_ranks.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_places.hpp"
 #include "bodies/overlap.hpp"
@@ -181,7 +181,7 @@ PetscErrorCode describe_work(MPI_Comm comm, const Config &config, int ranks, std
   Estimate estimate(config, ranks);
   estimate.add_all(rank == 0);
   std::vector<Work> list = std::move(estimate.list());
-  PetscCall(deliver(comm, std::vector<int>(list.size(), 0), &list));
+  PetscCall(send_to_ranks(comm, std::vector<int>(list.size(), 0), &list));
   if (rank > 0) PetscFunctionReturn(0);
   std::array<double, 3> parts{};
   const std::vector<double> work = estimate.total(std::move(list), &parts);

@@ -99,7 +99,7 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
 PetscErrorCode build_scene(const Config &config, const Domain &domain, Solver *solver, std::string *reason) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::setup);
-  BoxSides sides = config.sides;
+  BoundaryConditions sides = config.sides;
   PetscCall(solver->create(domain, {config.method, config.fluid, sides}));
   PetscCall(catch_together([&] { return fill_state(config, domain, solver); }, reason));
   if (!reason->empty()) PetscFunctionReturn(0);

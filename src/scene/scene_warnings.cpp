@@ -35,7 +35,7 @@ void add_lag_warnings(const Config &config, std::vector<std::string> *warnings) 
   for (const SpeciesSpec &spec : config.species) {
     ViscosityContrast alone(config.fluid);
     alone.add(spec.material(), 0);
-    if (!alone.exists() || alone.settles()) continue;
+    if (!alone.exists() || alone.allows_pressure_extrapolation()) continue;
     warnings->push_back(
         print("%s is %.3g times as viscous as the fluid: beyond a factor of 20 the velocity lags by about %.0f "
               "steps; use a shorter -time_step",

@@ -2,7 +2,7 @@
 
 #include "base/rank_zero.hpp"
 #include "bodies/seeding.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "grid/domain.hpp"
 #include "io/option_values.hpp"
 #include "openings/leaving.hpp"
@@ -29,7 +29,7 @@ std::string check_grid(const Config &config) {
            " without -check_only; accepted: auto, because mpiexec -n sets the ranks of a run";
   GridSpec serial = config.grid;
   serial.processors = {0, 0, 0};
-  if (const std::string reason = Domain::why_not(serial, 1); !reason.empty()) return reason;
+  if (const std::string reason = Domain::refusal_reason(serial, 1); !reason.empty()) return reason;
   for (int d = 0; d < 3; ++d) {
     const std::string name = std::string("-boundary_") + "xyz"[d];
     for (int high = 0; high < 2; ++high)
@@ -77,7 +77,7 @@ std::string check_walls(const Config &config) {
 
 // Whether a boundary is inflow, pressure or outflow.
 bool crossed(const Config &config, int d, int high) {
-  return config.grid.open[d][high] || config.boundary.is(SideKind::inflow, d, high);
+  return config.grid.open[d][high] || config.boundary.is(BoundaryKind::inflow, d, high);
 }
 
 std::string check_flow(const Config &config) {

@@ -2,9 +2,9 @@
 
 #include "bodies/shapes.hpp"
 #include "boxes/box_exchange.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/domain.hpp"
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 
 #include <algorithm>
 
@@ -44,7 +44,7 @@ PetscErrorCode bring_surfaces(const Domain &domain, const std::vector<Field> &su
     const Box block = body.phase->block(*body.box, 1, 1);
     const Layout &layout = block.layout();
     bodies->push_back(
-        {body.phase, Box(block.domain_shape(), layout.begin, layout.cells, 1), first_in(*body.box, block), {}});
+        {body.phase, Box(block.domain_shape(), layout.begin, layout.cells, 1), block_offset(*body.box, block), {}});
     boxes.push_back({nullptr, body.number});
   }
   for (std::size_t b = 0; b < boxes.size(); ++b) boxes[b].box = &(*bodies)[b].box;
@@ -69,7 +69,7 @@ PetscErrorCode measure_loads(const Config &config, Solver *solver, std::vector<S
   const Domain &domain = solver->domain();
   const Field *viscosity = nullptr;
   const std::vector<Phase> *phases = nullptr;
-  PetscCall(solver->looks().phases(&phases));
+  PetscCall(solver->synchronised().phases(&phases));
   PetscCall(solver->viscosity_now(&viscosity));
   bool any_boxed = false;
   std::vector<Field> surfaces(phases->size()), labels(phases->size());
@@ -92,7 +92,7 @@ PetscErrorCode measure_loads(const Config &config, Solver *solver, std::vector<S
   std::vector<BodyAtSurfaces> bodies;
   std::vector<BodyInBox> boxed;
   if (any_boxed) {
-    PetscCall(solver->looks().bodies(&boxed));
+    PetscCall(solver->synchronised().bodies(&boxed));
     PetscCall(bring_surfaces(domain, surfaces, boxed, &bodies));
   }
   const State &state = solver->state();

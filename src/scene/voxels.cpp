@@ -37,7 +37,7 @@ public:
       const std::string wrong = on_rank_0([&] { return volume_->read(begin, end, values); });
       std::size_t bytes = sizeof *values;
       for (int d = 0; d < 3; ++d) bytes *= end[d] - begin[d];
-      (void)share_bytes(values, bytes);
+      (void)broadcast_bytes(values, bytes);
       return wrong;
     };
     return resample(window, box_, read, fraction);
@@ -197,7 +197,7 @@ std::string measure_voxels(const std::vector<SpeciesSpec> &species, const Domain
 
 PetscErrorCode fill_voxels(const Domain &domain, const SpeciesSpec &spec, int label, Phase *phase, Places *places) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::bodies);
+  EventScope scope(Event::bodies);
   const View fraction = phase->fraction[0], name = phase->label[0];
   VoxelBody body;
   PetscCall(fail_together(domain.comm(), about(option_of(spec), body.open(spec.voxels, domain.domain_shape()))));

@@ -109,7 +109,7 @@ void add_elastic_force(const Box &box, const std::vector<Phase> &phases, double 
 
 PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::vector<Phase> &phases, Field &force) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::momentum);
+  EventScope scope(Event::momentum);
   const int dim = box.dimension(), n = box.cells()[0];
   in_row_parts(box, [&](const RowPart &part) {
     for_rows_in_blocks(
@@ -132,7 +132,7 @@ PetscErrorCode compute_elastic_force(const Box &box, double scale, const std::ve
 }
 
 void compute_elastic_force(const Box &box, double scale, const Phase &phase, Field &force) {
-  VerbScope scope(Verb::momentum);
+  EventScope scope(Event::momentum);
   const int dim = box.dimension();
   for (int a = 0; a < dim; ++a)
     for (const Segment &s : phase.tensor.stressed.all()) std::fill_n(force[a].row(s.j, s.k) + s.i_begin, s.size(), 0.0);

@@ -19,7 +19,7 @@ struct PointBlock {
   Int3 begin{}, end{};
   PointBlock(const Box &box, const Staggering &at, int layers) {
     for (int d = 0; d < 3; ++d) {
-      const Box::Range near = box.points_near(d, at[d], layers);
+      const Box::Range near = box.points_with_ghosts(d, at[d], layers);
       begin[d] = near.begin;
       end[d] = near.end;
     }
@@ -131,7 +131,7 @@ bool damps_short_waves(const Real3 &spacing, int dimension, const Fluid &fluid, 
 
 PetscErrorCode ExteriorLayers::build(const Box &box, const Phase &phase) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::exterior);
+  EventScope scope(Event::exterior);
   if (locations_.empty())
     for (const TensorComponent &c : tensor_locations(box.dimension())) locations_.push_back({c.at, {}});
   linear_ = phase.tensor.rule.linear;
@@ -211,10 +211,10 @@ double ExteriorLayers::extend_part(const Box &box, int layer, int part, int part
   return flops;
 }
 
-PetscErrorCode ExteriorLayers::extend(const Box &box, const BoxSides &sides, GhostExchange *exchange,
+PetscErrorCode ExteriorLayers::extend(const Box &box, const BoundaryConditions &sides, GhostExchange *exchange,
                                       Field &tensor) const {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::exterior);
+  EventScope scope(Event::exterior);
   const int parts = row_parts(box);
   std::vector<double> flops(parts);
   for (int L = 1; L <= layers; ++L) {

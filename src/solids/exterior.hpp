@@ -39,7 +39,7 @@ public:
   /// Extrapolates all components of B to the layers. Other points outside keep their value, I. Linear extrapolation
   /// reads three points inwards, so that for anchored bodies ghosts are exchanged after every layer; `exchange` is null
   /// for boxes that are complete on this rank.
-  PetscErrorCode extend(const Box &box, const BoxSides &sides, GhostExchange *exchange, Field &tensor) const;
+  PetscErrorCode extend(const Box &box, const BoundaryConditions &sides, GhostExchange *exchange, Field &tensor) const;
   /// Number of points in the layers of all locations.
   double points() const noexcept;
 

@@ -80,11 +80,11 @@ PetscErrorCode GridBodies::start() {
   PetscFunctionBeginUser;
   if (!flow_.staggered() &&
       std::any_of(phases.begin(), phases.end(), [](const Phase &phase) { return phase.material.elastic(); }))
-    flow_.next_tensor = tensor_at_rest(domain);
-  if (flow_.spec.interface != InterfaceScheme::plic) flow_.next_fraction = Field::at_rest(domain, 1);
+    flow_.next_tensor = undeformed_tensor(domain);
+  if (flow_.spec.interface != InterfaceScheme::plic) flow_.next_fraction = Field::on_demand(domain, 1);
   for (Phase &phase : phases) {
     phase.tensor.rule = evolve_rule(flow_, phase.material);
-    PetscCall(flow_.settle(&phase));
+    PetscCall(flow_.rebuild_derived_fields(&phase));
   }
   next_rows_ = phases[0].rows;  // an upper bound: the blocks themselves hold their default
   stale_.build(domain, phases[0].fraction[0], phases[0].rows, HUGE_VAL, 0, 0);
@@ -97,19 +97,19 @@ PetscErrorCode GridBodies::resume() {
     PetscCall(flow_.find_rows(&phase));
     PetscCall(find_solid(flow_.domain, phase));
     if (!phase.boxed && phase.material.elastic())
-      PetscCall(flow_.place_of_phases().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
+      PetscCall(flow_.phase_domain().update_ghosts(phase.tensor.field, Box::stencil_width, &phase.rows));
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridBodies::settle(Phase *phase) {
+PetscErrorCode GridBodies::rebuild_derived_fields(Phase *phase) {
   PetscFunctionBeginUser;
   const OccupiedRows before = phase->rows;
   PetscCall(flow_.find_rows(phase));
   if (!phase->boxed && !phase->material.is_membrane()) PetscCall(reset_exterior(flow_.domain, before, *phase));
   PetscCall(find_solid(flow_.domain, *phase));
   if (phase->boxed || !phase->material.elastic()) PetscFunctionReturn(0);
-  const PhasePlace place = flow_.place_of_phases();
+  const PhaseDomain place = flow_.phase_domain();
   PetscCall(solids_.find_layers(flow_.domain, *phase));
   PetscCall(solids_.extend(place, *phase, phase->tensor.field, &phase->rows));
   PetscCall(place.update_ghosts(phase->tensor.field, Box::stencil_width, &phase->rows));
@@ -122,9 +122,9 @@ PetscErrorCode GridBodies::reset_unresolved(const std::vector<double> &trace) {
     Phase &phase = flow_.now.phases[p];
     long count = 0;
     if (!phase.material.elastic() || phase.boxed) continue;
-    PetscCall(find_and_forget(flow_.domain, trace[p], phase, &count));
+    PetscCall(find_and_repair(flow_.domain, trace[p], phase, &count));
     flow_.now.forgotten += count;
-    if (count > 0) PetscCall(flow_.settle(&phase));
+    if (count > 0) PetscCall(flow_.rebuild_derived_fields(&phase));
   }
   PetscFunctionReturn(0);
 }
@@ -150,7 +150,7 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
     }
     if (plic) {
       WorkSpace::Lease fluxes;
-      PetscCall(flow_.work.take("fluxes of the interface", InterfaceTransport::work_fields, &fluxes));
+      PetscCall(flow_.work.lease("fluxes of the interface", InterfaceTransport::work_fields, &fluxes));
       PetscCall(interface_.advance(domain, dt, velocity, static_cast<long>(flow_.now.step), phase.rows, phase.fraction,
                                    fluxes.fields()));
     } else {
@@ -159,15 +159,15 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
     }
     rows[p].join(phase.rows);  // the body has moved by less than a cell
   }
-  std::vector<OccupiedRows::Moved> moved;
-  std::vector<WantedGhosts> fractions, tensors;
+  std::vector<OccupiedRows::Transported> moved;
+  std::vector<GhostUpdate> fractions, tensors;
   for (std::size_t p = 0; p < phases.size(); ++p)
     if (moves_on_grid(phases[p])) {
       fractions.push_back({&phases[p].fraction, ghosts, &rows[p].joined});
       moved.push_back({&phases[p].rows, std::as_const(phases[p]).fraction[0]});
     }
   PetscCall(flow_.exchange.update_ghosts(fractions));
-  PetscCall(OccupiedRows::follow(domain, moved));  // also finds what has entered the ghosts of idle rows
+  PetscCall(OccupiedRows::update(domain, moved));  // also finds what has entered the ghosts of idle rows
   for (std::size_t p = 0; p < phases.size(); ++p) {
     Phase &phase = phases[p];
     if (!moves_on_grid(phase)) continue;
@@ -182,7 +182,7 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
     tensors.push_back({&phase.tensor.field, Box::stencil_width, &rows[p].joined});
   }
   PetscCall(flow_.exchange.update_ghosts(tensors));
-  for (const WantedGhosts &B : tensors) fill_wall_ghosts_tensor(domain, flow_.spec.sides, *B.field, B.width, B.rows);
+  for (const GhostUpdate &B : tensors) fill_wall_ghosts_tensor(domain, flow_.spec.sides, *B.field, B.width, B.rows);
   PetscFunctionReturn(0);
 }
 
@@ -191,12 +191,12 @@ PetscErrorCode GridBodies::move(double dt, std::vector<Phase> *moved_phases) {
 // outside it keep I. Does not update ghosts.
 PetscErrorCode GridBodies::transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,
                                                        const OccupiedRows *rows) {
-  const PhasePlace place = flow_.place_of_phases();
+  const PhaseDomain place = flow_.phase_domain();
   const Field &velocity = flow_.now.velocity;
   PetscFunctionBeginUser;
   if (flow_.staggered()) {
     WorkSpace::Lease stage;
-    PetscCall(flow_.work.take("first stage of B", phase.tensor.field.count(), &stage));
+    PetscCall(flow_.work.lease("first stage of B", phase.tensor.field.count(), &stage));
     PetscCall(solids_.advance(place, {dt, flow_.now.step, flow_.fluid, velocity, before}, rows, phase, stage.fields()));
   } else {
     PetscCall(

@@ -22,7 +22,7 @@ public:
   PetscErrorCode carry(CarriedState *state) override;
   PetscErrorCode start() override;
   PetscErrorCode resume() override;
-  PetscErrorCode settle(Phase *phase) override;
+  PetscErrorCode rebuild_derived_fields(Phase *phase) override;
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
   /// Repairs B where the grid does not resolve it. `trace`: the largest tr B of every phase. Collective.
   PetscErrorCode reset_unresolved(const std::vector<double> &trace);

@@ -1,7 +1,7 @@
 #include "solids/interface.hpp"
 
 #include "base/events.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "grid/threads.hpp"
 #include "kernels/interface_flux.hpp"
 
@@ -85,7 +85,7 @@ EULASTIC_CLONES void apply_fluxes(const DirectionalSplit &t, const Segment *begi
 long advance_direction(const Box &box, const DirectionalSplit &t, const ActiveSegments &cells,
                        const ActiveSegments &faces) {
   const auto pass = [&](const ActiveSegments &active, const Extent &extent, auto kernel) {
-    in_parts_of(inside(active, extent), box, kernel);
+    in_segment_parts(inside(active, extent), box, kernel);
   };
   std::atomic<long> planes{0};
   const auto mixed = box.dimension() == 2 ? mixed_fluxes_2d : mixed_fluxes_3d;
@@ -126,7 +126,7 @@ std::array<Extent, 3> cells_of_directions(const Box &box, const Int3 &order) {
 PetscErrorCode InterfaceTransport::advance(const Box &box, double dt, const Field &velocity, long step,
                                            const OccupiedRows &rows, Field &fraction, Field &work) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::solid_fraction);
+  EventScope scope(Event::solid_fraction);
   const int dimension = box.dimension();
   const Int3 order = order_of_directions(dimension, step);
   const std::array<Extent, 3> cells = cells_of_directions(box, order);
@@ -134,7 +134,7 @@ PetscErrorCode InterfaceTransport::advance(const Box &box, double dt, const Fiel
   fill_wall_ghosts_even(box, at_centre, phi, 1, &rows);
   cells_.build_band(box, phi, rows, dimension);
   faces_.build_faces(box, cells_);
-  in_parts_of(cells_.all(), box, [&](const Segment *begin, const Segment *end) {
+  in_segment_parts(cells_.all(), box, [&](const Segment *begin, const Segment *end) {
     for (const Segment *s = begin; s < end; ++s)
       for (int i = s->i_begin; i < s->i_end; ++i) solid(i, s->j, s->k) = phi(i, s->j, s->k) > 0.5;
   });

@@ -68,7 +68,7 @@ EULASTIC_CLONES void advect_3d(const AdvectionTerms &t, const RowPart &part, con
 PetscErrorCode advect_fraction(const Box &box, double dt, const Field &velocity, const Phase &phase,
                                const OccupiedRows &next_rows, Field &next) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::solid_fraction);
+  EventScope scope(Event::solid_fraction);
   const Real3 &h = box.spacing();
   const AdvectionTerms terms{&box, dt, &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}};
   in_row_parts(box, [&](const RowPart &part) {
@@ -81,7 +81,7 @@ PetscErrorCode advect_fraction(const Box &box, double dt, const Field &velocity,
 
 PetscErrorCode find_solid(const Box &box, Phase &phase) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::solid_fraction);
+  EventScope scope(Event::solid_fraction);
   const ConstView phi = phase.fraction[0];
   const EvolveRule &rule = phase.tensor.rule;
   phase.tensor.evolving.build(box, phi, phase.rows, rule.centre, 1, 0);

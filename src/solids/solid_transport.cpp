@@ -34,13 +34,13 @@ EULASTIC_CLONES void limit_row(const Edges &e, const Segment &s) {
 
 PetscErrorCode limit_shear(const Box &box, const Phase &phase, Field &tensor) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::left_cauchy_green);
+  EventScope scope(Event::left_cauchy_green);
   for (int f = 0; f < tensor.count(); ++f) {
     const auto [a, b, at] = phase.tensor.components()[f];
     if (a == b) continue;
     const Edges edges{phase.fraction[0],     tensor[a], tensor[b], tensor[f], tensor[f].stride(a), tensor[f].stride(b),
                       phase.tensor.rule.edge};
-    in_parts_of(phase.tensor.evolving.all(), box, [&](const Segment *begin, const Segment *end) {
+    in_segment_parts(phase.tensor.evolving.all(), box, [&](const Segment *begin, const Segment *end) {
       for (const Segment *s = begin; s < end; ++s) {
         if (s->j >= box.points_end(1, at[1]) || s->k >= box.points_end(2, at[2])) continue;
         limit_row(edges, {s->i_begin, std::min(s->i_end, box.points_end(0, at[0])), s->j, s->k});
@@ -57,7 +57,7 @@ PetscErrorCode SolidTransport::find_layers(const Box &box, const Phase &phase) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SolidTransport::extend(const PhasePlace &place, const Phase &phase, Field &tensor,
+PetscErrorCode SolidTransport::extend(const PhaseDomain &place, const Phase &phase, Field &tensor,
                                       const OccupiedRows *rows) {
   PetscFunctionBeginUser;
   if (!extends_) PetscFunctionReturn(0);
@@ -70,7 +70,7 @@ PetscErrorCode SolidTransport::extend(const PhasePlace &place, const Phase &phas
 
 // Where B is extrapolated, the second stage reads the first one only within the extrapolated layers, so that the rest
 // of `stage` may have any values. Otherwise the second stage reads I around the body.
-PetscErrorCode SolidTransport::advance(const PhasePlace &place, const Step &step, const OccupiedRows *rows,
+PetscErrorCode SolidTransport::advance(const PhaseDomain &place, const Step &step, const OccupiedRows *rows,
                                        Phase &phase, Field &stage) {
   PetscFunctionBeginUser;
   const Box &box = *place.box;

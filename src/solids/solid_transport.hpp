@@ -25,7 +25,7 @@ public:
   /// Finds the layers to which B is extrapolated. phi needs five valid ghost layers; find_solid() must have run.
   PetscErrorCode find_layers(const Box &box, const Phase &phase);
   /// Extrapolates B of the phase, or its first stage, outside the body. Ghosts are invalid afterwards.
-  PetscErrorCode extend(const PhasePlace &place, const Phase &phase, Field &tensor, const OccupiedRows *rows);
+  PetscErrorCode extend(const PhaseDomain &place, const Phase &phase, Field &tensor, const OccupiedRows *rows);
 
   struct Step {
     double dt;
@@ -36,7 +36,7 @@ public:
   };
   /// Advances B of the phase over dt. `stage`: work space with as many components. Requires find_layers(); ghosts of B
   /// are invalid afterwards.
-  PetscErrorCode advance(const PhasePlace &place, const Step &step, const OccupiedRows *rows, Phase &phase,
+  PetscErrorCode advance(const PhaseDomain &place, const Step &step, const OccupiedRows *rows, Phase &phase,
                          Field &stage);
 
 private:

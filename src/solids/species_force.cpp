@@ -48,7 +48,7 @@ PetscErrorCode SpeciesForces::add_rate(const MomentumRate &rate) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SpeciesForces::add_power(const FlowLook &bodies, double *power) {
+PetscErrorCode SpeciesForces::add_power(const SynchronisedBodies &bodies, double *power) {
   const Domain &domain = flow_.domain;
   const Field &velocity = flow_.now.velocity;
   double total = 0;

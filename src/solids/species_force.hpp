@@ -15,7 +15,7 @@ public:
   /// Whether any phase has a body force.
   static bool exist(const std::vector<Phase> &phases);
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  PetscErrorCode add_power(const FlowLook &bodies, double *power) override;
+  PetscErrorCode add_power(const SynchronisedBodies &bodies, double *power) override;
 
 private:
   Flow &flow_;

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 
 namespace eulastic {
@@ -302,7 +302,7 @@ PetscErrorCode SurfaceCorrection::apply(const Box &box, const SurfaceStep &step,
                                         Field &work) {
   PetscFunctionBeginUser;
   if (!phase.material.elastic()) PetscFunctionReturn(0);
-  VerbScope scope(Verb::left_cauchy_green);
+  EventScope scope(Event::left_cauchy_green);
   const int dimension = box.dimension(), team = row_parts(box);
   if (locations_.empty())
     for (const TensorComponent &c : tensor_locations(dimension)) locations_.push_back({c, {}, {}, {}});
@@ -400,7 +400,7 @@ EULASTIC_CLONES void measure_3d(const Segment &s, ConstView phi, const double *c
 
 }  // namespace
 
-void SurfaceCorrection::find_points(const Box &box, const BoxSides &sides, const Phase &phase,
+void SurfaceCorrection::find_points(const Box &box, const BoundaryConditions &sides, const Phase &phase,
                                     Location *location) const {
   const Layout &layout = box.layout();
   const ConstView phi = phase.fraction[0];
@@ -411,11 +411,11 @@ void SurfaceCorrection::find_points(const Box &box, const BoxSides &sides, const
   location->points.clear();
   Box::Range range[3];
   for (int d = 0; d < 3; ++d) {
-    range[d] = box.points_near(d, at[d], ghosts);
+    range[d] = box.points_with_ghosts(d, at[d], ghosts);
     if (at[d] && range[d].end == layout.cells[d] + ghosts) ++range[d].end;  // edges around the last ghost centres
     if (!box.is_wall(d)) continue;
-    if (sides[d][0].kind == SideKind::symmetry) range[d].begin = -ghosts;
-    if (sides[d][1].kind == SideKind::symmetry) range[d].end = box.points_end(d, at[d]) + ghosts;
+    if (sides[d][0].kind == BoundaryKind::symmetry) range[d].begin = -ghosts;
+    if (sides[d][1].kind == BoundaryKind::symmetry) range[d].end = box.points_end(d, at[d]) + ghosts;
   }
   const int last = box.points_end(0, at[0]);
   for (int k = range[2].begin; k < range[2].end; ++k)
@@ -453,7 +453,7 @@ void SurfaceCorrection::measure_centres(const Box &box, const Field &velocity, C
   for (int d = 0; d < dimension; ++d) v[d] = velocity[d].origin;
   for (int f = 0; f <= dimension; ++f) out[f] = measured[f].origin;
   const Int3 &n = box.cells();
-  in_parts_of(band_.all(), box, [&](const Segment *begin, const Segment *end) {
+  in_segment_parts(band_.all(), box, [&](const Segment *begin, const Segment *end) {
     for (const Segment *s = begin; s < end; ++s) {
       const Segment near{std::max(s->i_begin, -1), std::min(s->i_end, n[0] + 1), s->j, s->k};
       if (near.size() <= 0 || s->j < -1 || s->j > n[1] || s->k < -1 || s->k > n[2]) continue;

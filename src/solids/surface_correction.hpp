@@ -15,7 +15,7 @@ namespace eulastic {
 struct SurfaceStep {
   double dt;
   Fluid fluid;
-  const BoxSides &sides;
+  const BoundaryConditions &sides;
 };
 
 class SurfaceCorrection {
@@ -37,7 +37,7 @@ private:
     std::vector<PetscInt> points;     ///< owned points at the surface, as offsets from the first double of the field
     std::vector<double> next;         ///< corrected components of `points`, one point after the other
   };
-  void find_points(const Box &box, const BoxSides &sides, const Phase &phase, Location *location) const;
+  void find_points(const Box &box, const BoundaryConditions &sides, const Phase &phase, Location *location) const;
   /// Computes at the centres of the band the gradient of phi, up to a factor, and the strain rate, as consecutive
   /// components of `measured`.
   void measure_centres(const Box &box, const Field &velocity, ConstView phi, Field &measured) const;

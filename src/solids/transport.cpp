@@ -97,7 +97,7 @@ EULASTIC_INLINE void advance_batch(const TransportTerms &t, const Viscosity &vis
   for (int e = 0; e < Dim; ++e) {
     const ConstView face = (*t.velocity)[e];
     if (Dim == 3 && !location.on_edge()) batch.ahead[0] = face.origin + 2 * face.sz;
-    kernels::carry_velocity(batch, face, e, location.at.data(), Dim, velocity[e]);
+    kernels::average_velocity(batch, face, e, location.at.data(), Dim, velocity[e]);
   }
   if (location.on_edge())
     advance_component<Dim>(t, viscosity, phase, B, location.a, location.b, batch, carried, rate, out);
@@ -207,7 +207,7 @@ EULASTIC_CLONES Evolved with_same_viscosity_2d(const TransportTerms &t, const Ro
 }
 EULASTIC_CLONES Evolved with_own_viscosity_2d(const TransportTerms &t, const RowPart &part, const Phase &phase,
                                               const Field &B, Field &out) {
-  return advance_tensor<2>(t, kernels::OwnViscosity{phase.tensor.rule.viscosity_excess}, part, phase, B, out);
+  return advance_tensor<2>(t, kernels::SolidViscosity{phase.tensor.rule.viscosity_excess}, part, phase, B, out);
 }
 EULASTIC_CLONES Evolved with_same_viscosity_3d(const TransportTerms &t, const RowPart &part, const Phase &phase,
                                                const Field &B, Field &out) {
@@ -215,7 +215,7 @@ EULASTIC_CLONES Evolved with_same_viscosity_3d(const TransportTerms &t, const Ro
 }
 EULASTIC_CLONES Evolved with_own_viscosity_3d(const TransportTerms &t, const RowPart &part, const Phase &phase,
                                               const Field &B, Field &out) {
-  return advance_tensor<3>(t, kernels::OwnViscosity{phase.tensor.rule.viscosity_excess}, part, phase, B, out);
+  return advance_tensor<3>(t, kernels::SolidViscosity{phase.tensor.rule.viscosity_excess}, part, phase, B, out);
 }
 
 }  // namespace
@@ -223,7 +223,7 @@ EULASTIC_CLONES Evolved with_own_viscosity_3d(const TransportTerms &t, const Row
 PetscErrorCode transport_tensor(const Box &box, const TensorStage &stage, const Field &velocity, const Phase &phase,
                                 const Field &tensor, Field &next) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::left_cauchy_green);
+  EventScope scope(Event::left_cauchy_green);
   const Real3 &h = box.spacing();
   const TransportTerms terms{
       &box,        stage.dt,       &velocity, {1 / h[0], 1 / h[1], 1 / h[2]}, phase.tensor.rule, stage.second_of_heun,
@@ -259,7 +259,7 @@ PetscErrorCode reset_exterior(const Box &box, const OccupiedRows &before, Phase 
         if (before.idle(j, k) && phase.rows.idle(j, k)) continue;
         for (int i = 0; i < box.points_end(0, at[0]); ++i)
           if (fraction_at(phi.row(j, k) + i, a == b, phi.stride(a), phi.stride(b)) < (a == b ? rule.centre : rule.edge))
-            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // do not touch unused memory (Field::at_rest)
+            if (B(i, j, k) != c.rest()) B(i, j, k) = c.rest();  // do not touch unused memory (Field::on_demand)
       }
   }
   PetscFunctionReturn(0);

@@ -50,7 +50,7 @@ bool may_be_unresolved(double trace, int dimension) {
 }
 
 long reset_unresolved(const Box &box, Phase &phase) {
-  VerbScope scope(Verb::left_cauchy_green);
+  EventScope scope(Event::left_cauchy_green);
   const Layout &layout = box.layout();
   const Int3 n = box.cells();
   const int dimension = box.dimension(), layers_z = dimension == 3 ? 1 : 0;

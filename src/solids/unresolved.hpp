@@ -25,7 +25,7 @@ long reset_unresolved(const Box &box, Phase &phase);
 PetscErrorCode reset_unresolved(const Domain &domain, Phase &phase, long *count);
 
 /// Does the same, if a largest trace of `trace` makes it necessary.
-inline PetscErrorCode find_and_forget(const Domain &box, double trace, Phase &phase, long *count) {
+inline PetscErrorCode find_and_repair(const Domain &box, double trace, Phase &phase, long *count) {
   *count = 0;
   return may_be_unresolved(trace, box.dimension()) ? reset_unresolved(box, phase, count) : 0;
 }

@@ -1,12 +1,12 @@
 #include "solver/classic_step.hpp"
 
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "flow/momentum.hpp"
 #include "flow/projection.hpp"
 
 namespace eulastic {
 
-PetscErrorCode ClassicStep::step(double dt, const Look &, const Look &with_pressure) {
+PetscErrorCode ClassicStep::step(double dt, const Observer &, const Observer &with_pressure) {
   PetscFunctionBeginUser;
   for (FlowPart *part : flow_.parts) PetscCall(part->begin_step());
   for (FlowPart *part : flow_.parts) PetscCall(part->prepare(dt));

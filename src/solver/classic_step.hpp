@@ -9,7 +9,7 @@ namespace eulastic {
 class ClassicStep final : public Scheme {
 public:
   using Scheme::Scheme;
-  PetscErrorCode step(double dt, const Look &in_middle, const Look &with_pressure) override;
+  PetscErrorCode step(double dt, const Observer &in_middle, const Observer &with_pressure) override;
 
 private:
   PetscErrorCode predict(double dt);

@@ -1,6 +1,6 @@
 #include "solver/fast_step.hpp"
 
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "flow/implicit_viscosity.hpp"
 #include "flow/momentum.hpp"
 #include "flow/projection.hpp"
@@ -40,7 +40,7 @@ PetscErrorCode FastStep::start() {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FastStep::step(double dt, const Look &in_middle, const Look &with_pressure) {
+PetscErrorCode FastStep::step(double dt, const Observer &in_middle, const Observer &with_pressure) {
   const State &now = flow_.now;
   const double to_middle = 0.5 * (now.dt + dt);
   PetscFunctionBeginUser;
@@ -104,12 +104,12 @@ PetscErrorCode FastStep::predict(double dt) {
 PetscErrorCode FastStep::advance_viscous_stages(const Fluid &fluid, const MomentumStep &step,
                                                 const WeightedTarget &slope) {
   const Domain &domain = flow_.domain;
-  const BoxSides &sides = flow_.spec.sides;
+  const BoundaryConditions &sides = flow_.spec.sides;
   State &now = flow_.now;
   const int dim = domain.dimension();
   WorkSpace::Lease rate, before;
   PetscFunctionBeginUser;
-  PetscCall(flow_.work.take("rate of momentum", dim, &rate));
+  PetscCall(flow_.work.lease("rate of momentum", dim, &rate));
   PetscCall(
       momentum_rate(domain, fluid, step, now.velocity, now.pressure, now.phases, now.advection, rate.fields(), slope));
   const MomentumRate all{
@@ -117,7 +117,7 @@ PetscErrorCode FastStep::advance_viscous_stages(const Fluid &fluid, const Moment
   for (FlowPart *part : flow_.parts) PetscCall(part->add_rate(all));
   for (FlowPart *part : flow_.parts) PetscCall(part->close_rate(all));
   PetscCall(add_local_viscous_force(1, rate.fields()));
-  PetscCall(flow_.work.take("viscous stage before", dim, &before));
+  PetscCall(flow_.work.lease("viscous stage before", dim, &before));
   SuperTimeStepping viscous{rate.part(0, dim), {}, flow_.velocity_star.part(0, dim), before.part(0, dim)};
   const int stages = flow_.spec.viscous == ViscousScheme::rkl ? rkl_stages(step.dt, limits(FlowExtremes{}).viscous) : 1;
   ViscousStep viscous_step{sides,
@@ -149,7 +149,7 @@ PetscErrorCode FastStep::advance_viscous_stages(const Fluid &fluid, const Moment
 // the deviatoric stress in 3-D, and half of it if the step begins with the last pressure. In a body much more viscous
 // than the fluid only the fluid resists a dilation, so that the body's viscosity would turn p into noise there; with
 // the least viscosity of the flow this does not happen at any contrast.
-PressureRotation FastStep::rotation() const {
+RotationalUpdate FastStep::rotation() const {
   const bool extrapolates = static_cast<bool>(flow_.now.pressure_before);
   if (!viscosity_) return {(extrapolates ? 1 : 0.5) * flow_.fluid.kinematic_viscosity(), 0};
   const ViscosityContrast range = contrast({});

@@ -16,14 +16,14 @@ public:
   ~FastStep() override;
   PetscErrorCode start() override;
   std::size_t bytes() const override;
-  PetscErrorCode step(double dt, const Look &in_middle, const Look &with_pressure) override;
+  PetscErrorCode step(double dt, const Observer &in_middle, const Observer &with_pressure) override;
 
 private:
   PetscErrorCode begin_slope(double dt);
   void extrapolate_pressure(double dt);
   PetscErrorCode predict(double dt);
   PetscErrorCode advance_viscous_stages(const Fluid &fluid, const MomentumStep &step, const WeightedTarget &slope);
-  PressureRotation rotation() const;
+  RotationalUpdate rotation() const;
 
   std::unique_ptr<ImplicitViscosity> implicit_;  ///< where viscosities differ and there are no rigid bodies; else null
 };

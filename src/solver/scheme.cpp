@@ -1,7 +1,7 @@
 #include "solver/scheme.hpp"
 
 #include "bodies/labels.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "flow/projection.hpp"
 #include "flow/viscous_stress.hpp"
 #include "rigid/rigid_surfaces.hpp"
@@ -14,16 +14,16 @@ int Scheme::work_fields(const Method &method, int dimension, int forces) {
   return method.staggered() ? dimension + std::max(dimension, forces) : forces;
 }
 
-bool Scheme::expects_pressure(const Method &method, const ViscosityContrast &contrast, bool travel) {
+bool Scheme::extrapolates_pressure(const Method &method, const ViscosityContrast &contrast, bool travel) {
   return method.staggered() && method.viscous == ViscousScheme::rkl &&
-         (contrast.exists() ? contrast.settles() : travel);
+         (contrast.exists() ? contrast.allows_pressure_extrapolation() : travel);
 }
 
 PetscErrorCode Scheme::start() {
   PetscFunctionBeginUser;
   const ViscosityContrast range = contrast({});
   if (range.exists()) viscosity_ = LocalViscosity(flow_.domain);
-  if (expects_pressure(flow_.spec, range, flow_.rigid && flow_.rigid->travels))
+  if (extrapolates_pressure(flow_.spec, range, flow_.rigid && flow_.rigid->travels))
     flow_.now.pressure_before = Field(flow_.domain, 1);
   PetscFunctionReturn(0);
 }
@@ -85,7 +85,7 @@ PetscErrorCode Scheme::move_bodies(double dt) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Scheme::project(double dt, const PressureRotation &rotation, const Look &with_pressure) {
+PetscErrorCode Scheme::project(double dt, const RotationalUpdate &rotation, const Observer &with_pressure) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
   for (FlowPart *part : flow_.parts) PetscCall(part->constrain(dt));
@@ -108,7 +108,7 @@ PetscErrorCode Scheme::end_step(double dt) {
     for (Phase &phase : now.phases)
       if (phase.label) PetscCall(carry_labels(flow_.domain, flow_.exchange, &phase));
     PetscCall(flow_.bodies.follow(flow_.domain, now.phases));
-    for (FlowPart *part : flow_.parts) PetscCall(part->follow());
+    for (FlowPart *part : flow_.parts) PetscCall(part->update_after_labels());
     now.travel_since_labels = 0;
   }
   for (FlowPart *part : flow_.parts) PetscCall(part->end_step());

@@ -9,7 +9,7 @@
 namespace eulastic {
 
 class Projection;
-struct PressureRotation;
+struct RotationalUpdate;
 
 class Scheme {
 public:
@@ -19,14 +19,14 @@ public:
   static int work_fields(const Method &method, int dimension, int forces);
   /// Whether a step begins with the pressure extrapolated to its middle rather than with the last one. `travel`:
   /// whether rigid bodies travel.
-  static bool expects_pressure(const Method &method, const ViscosityContrast &contrast, bool travel);
+  static bool extrapolates_pressure(const Method &method, const ViscosityContrast &contrast, bool travel);
 
   /// Allocates memory, once the phases of the state are known.
   virtual PetscErrorCode start();
   /// Advances the state by dt. `in_middle` is called with the velocity of the start and the phases of the middle
   /// (method `fast` only); `with_pressure` with the velocity of the start, in Flow::velocity_star, and the pressure at
   /// the end of the projection.
-  virtual PetscErrorCode step(double dt, const Look &in_middle, const Look &with_pressure) = 0;
+  virtual PetscErrorCode step(double dt, const Observer &in_middle, const Observer &with_pressure) = 0;
   virtual std::size_t bytes() const;
 
   TimeStepLimits limits(const FlowExtremes &extremes) const;
@@ -46,7 +46,7 @@ protected:
   PetscErrorCode add_local_viscous_force(double scale, Field &to);
   PetscErrorCode move_bodies(double dt);
   /// The part of a step after the prediction: projection, new pressure, new velocity with ghosts.
-  PetscErrorCode project(double dt, const PressureRotation &rotation, const Look &with_pressure);
+  PetscErrorCode project(double dt, const RotationalUpdate &rotation, const Observer &with_pressure);
   /// Updates labels if due, calls end_step() of the parts, and sets time and number of the state.
   PetscErrorCode end_step(double dt);
 

@@ -3,7 +3,7 @@
 #include "adhesion/adhesion.hpp"
 #include "boxes/boxed_bodies.hpp"
 #include "drops/surface_tension.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "flow/projection.hpp"
 #include "membranes/membrane_transport.hpp"
 #include "membranes/stretch_force.hpp"
@@ -16,7 +16,7 @@
 #include "solids/species_force.hpp"
 #include "solver/classic_step.hpp"
 #include "solver/fast_step.hpp"
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 
 #include <algorithm>
 
@@ -40,7 +40,7 @@ PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   flow_ = std::make_unique<Flow>(domain, spec);
   boxed_ = std::make_unique<BoxedBodies>(flow_.get());
   projection_ = std::make_unique<Projection>(flow_.get());
-  looks_ = std::make_unique<Looks>(flow_.get(), boxed_.get());
+  synchronised_ = std::make_unique<SynchronisedState>(flow_.get(), boxed_.get());
   if (spec.staggered())
     scheme_ = std::make_unique<FastStep>(flow_.get(), projection_.get());
   else
@@ -59,7 +59,7 @@ PetscErrorCode Solver::set_rigid(std::unique_ptr<RigidBodies> bodies) {
   PetscFunctionBeginUser;
   if (!bodies->exist()) PetscFunctionReturn(0);
   const SolverSpec &spec = flow_->spec;
-  if (spec.pressure == PressureKind::acm && !spec.acm_of_the_paper()) PetscCall(projection_->create(0));
+  if (spec.pressure == PressureKind::acm && !spec.is_single_acm_step()) PetscCall(projection_->create(0));
   rigid_ = std::make_unique<RigidFlow>(flow_.get(), std::move(bodies));
   PetscCall(rigid_->create(projection_->owned_solver()));
   PetscFunctionReturn(0);
@@ -73,7 +73,7 @@ void Solver::set_adhesion(const AdhesionSpec &spec) {
 PetscErrorCode Solver::make_parts() {
   Flow *flow = flow_.get();
   const std::vector<Phase> &phases = flow->now.phases;
-  const BoxSides &sides = flow->spec.sides;
+  const BoundaryConditions &sides = flow->spec.sides;
   const auto add = [&](std::unique_ptr<FlowPart> part) {
     flow->parts.push_back(part.get());
     owned_parts_.push_back(std::move(part));
@@ -85,7 +85,7 @@ PetscErrorCode Solver::make_parts() {
   if (!phases.empty()) add(std::make_unique<GridBodies>(flow));
   if (boxed_->exist()) flow->parts.push_back(boxed_.get());
   if (rigid_) flow->parts.push_back(rigid_.get());
-  if (!phases.empty() && volume_crosses(sides))
+  if (!phases.empty() && fluid_crosses(sides))
     add(std::make_unique<BodiesAtSides>(flow, boxed_.get(), generators.get()));
   if (SurfaceTension::exists(phases)) add(std::make_unique<SurfaceTension>(flow));
   if (MembraneTransport::exists(phases)) add(std::make_unique<MembraneTransport>(flow));
@@ -108,7 +108,7 @@ PetscErrorCode Solver::prepare() {
   for (FlowPart *part : flow_->parts) PetscCall(part->prescribe_velocity(now.time, now.velocity));
   PetscCall(flow_->update_velocity_ghosts(now.velocity, now.time, Box::stencil_width));
   PetscCall(flow_->update_centre_ghosts(now.pressure, 1));
-  if (volume_crosses(flow_->spec.sides)) PetscCall(start_flow(flow_.get(), projection_.get()));
+  if (fluid_crosses(flow_->spec.sides)) PetscCall(start_flow(flow_.get(), projection_.get()));
   PetscCall(scheme_->start());
   for (FlowPart *part : flow_->parts) PetscCall(part->start());
   PetscFunctionReturn(0);
@@ -120,7 +120,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   scheme_->set_stages(stages);
   sweeps_before_ = sweeps - projection_->solver().sweeps();
   PetscCall(flow_->exchange.update_ghosts(now.velocity, Box::stencil_width));
-  for (FlowPart *part : flow_->parts) PetscCall(part->recall());
+  for (FlowPart *part : flow_->parts) PetscCall(part->begin_resume());
   fill_wall_ghosts_velocity(flow_->domain, flow_->spec.sides, now.time, now.velocity, Box::stencil_width);
   PetscCall(flow_->update_centre_ghosts(now.pressure, 1));
   if (now.pressure_before) PetscCall(flow_->update_centre_ghosts(now.pressure_before, 1));
@@ -149,8 +149,8 @@ PetscErrorCode Solver::reset_unresolved(const FlowExtremes &extremes) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_pressure) {
-  const auto record_middle = [&]() -> PetscErrorCode { return in_middle ? looks_->behind(in_middle) : 0; };
+PetscErrorCode Solver::step(double dt, const Observer &in_middle, const Observer &with_pressure) {
+  const auto record_middle = [&]() -> PetscErrorCode { return in_middle ? synchronised_->at_half_step(in_middle) : 0; };
   const auto record_pressure = [&] {
     Flow &flow = *flow_;
     PetscFunctionBeginUser;
@@ -167,7 +167,7 @@ PetscErrorCode Solver::step(double dt, const Look &in_middle, const Look &with_p
 PetscErrorCode Solver::viscosity_now(const Field **viscosity) {
   const std::vector<Phase> *phases = nullptr;
   PetscFunctionBeginUser;
-  PetscCall(looks_->phases(&phases));
+  PetscCall(synchronised_->phases(&phases));
   PetscCall(scheme_->find_viscosity_of(*phases, viscosity));
   PetscFunctionReturn(0);
 }
@@ -177,8 +177,8 @@ PetscErrorCode Solver::force_power(double *power) {
   std::vector<BodyInBox> boxed;
   PetscFunctionBeginUser;
   *power = 0;
-  PetscCall(looks_->phases(&phases));
-  PetscCall(looks_->bodies(&boxed));
+  PetscCall(synchronised_->phases(&phases));
+  PetscCall(synchronised_->bodies(&boxed));
   for (FlowPart *part : flow_->parts) PetscCall(part->add_power({*phases, boxed}, power));
   PetscFunctionReturn(0);
 }
@@ -191,8 +191,8 @@ PetscErrorCode Solver::surface_energy(SurfaceEnergy *measured, std::vector<Surfa
   PetscFunctionBeginUser;
   *measured = {};
   if (bodies) bodies->clear();
-  PetscCall(looks_->phases(&phases));
-  PetscCall(looks_->bodies(&boxed));
+  PetscCall(synchronised_->phases(&phases));
+  PetscCall(synchronised_->bodies(&boxed));
   for (FlowPart *part : flow_->parts)
     PetscCall(part->add_surface_energy({*phases, boxed}, measured, bodies ? &samples : nullptr));
   const bool membranes =
@@ -237,7 +237,7 @@ PetscErrorCode Solver::carry(CarriedState *state) {
 }
 
 std::size_t Solver::bytes() const {
-  return flow_->bytes() + projection_->solver().bytes() + scheme_->bytes() + looks_->bytes();
+  return flow_->bytes() + projection_->solver().bytes() + scheme_->bytes() + synchronised_->bytes();
 }
 
 }  // namespace eulastic

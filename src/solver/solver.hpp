@@ -10,7 +10,7 @@
 namespace eulastic {
 
 class BoxedBodies;
-class Looks;
+class SynchronisedState;
 class Projection;
 class RigidBodies;
 class RigidFlow;
@@ -42,7 +42,7 @@ public:
   BodyTracker &bodies() { return flow_->bodies; }
   Flow &flow() { return *flow_; }
   BoxedBodies &boxed() const { return *boxed_; }
-  Looks &looks() { return *looks_; }
+  SynchronisedState &synchronised() { return *synchronised_; }
   /// The part of this type, or null if the scene has none.
   template <class Part>
   Part *part() const;
@@ -52,7 +52,7 @@ public:
   /// Sets the bonds between surfaces; before prepare().
   void set_adhesion(const AdhesionSpec &spec);
   /// Sets boundaries whose profiles depend on the bodies; before prepare().
-  void set_profiles(const BoxSides &sides) { flow_->spec.sides = sides; }
+  void set_profiles(const BoundaryConditions &sides) { flow_->spec.sides = sides; }
   /// Creates the parts and makes ghosts, B outside the bodies and active segments consistent; call after the initial
   /// fields are set. Collective.
   PetscErrorCode prepare();
@@ -67,10 +67,11 @@ public:
   /// of measure(). Collective.
   PetscErrorCode reset_unresolved(const FlowExtremes &extremes);
   /// Advances the flow by dt. `in_middle` is called with the velocity of the start and, with the staggered method, the
-  /// phases of the middle; averages of its measures and those of looks().behind(), weighted by the lengths of this step
-  /// and the last, are measures at the time of that velocity, to second order. `with_pressure` is called later, with
-  /// the velocity of the start and the pressure of the middle; the same holds for measures of these two. Collective.
-  PetscErrorCode step(double dt, const Look &in_middle = {}, const Look &with_pressure = {});
+  /// phases of the middle; averages of its measures and those of synchronised().at_half_step(), weighted by the lengths
+  /// of this step and the last, are measures at the time of that velocity, to second order. `with_pressure` is called
+  /// later, with the velocity of the start and the pressure of the middle; the same holds for measures of these two.
+  /// Collective.
+  PetscErrorCode step(double dt, const Observer &in_middle = {}, const Observer &with_pressure = {});
 
   // Measures at the time of the velocity. Collective.
 
@@ -87,7 +88,7 @@ public:
   const RigidFaces *rigid() const { return flow_->rigid; }
   /// Result of RigidFlow::loads(); empty if the scene has no rigid bodies.
   PetscErrorCode rigid_loads(std::vector<RigidLoad> *loads);
-  bool is_behind() const { return flow_->is_behind(); }
+  bool phases_lag() const { return flow_->phases_lag(); }
   /// One line if rigid bodies overlap that must not, or if a body that cannot leave has reached a boundary that volume
   /// crosses; else empty.
   const std::string &stop_reason() const { return flow_->stop_reason; }
@@ -100,7 +101,7 @@ public:
   /// Sets the pressure solver's memory of earlier steps to 0.
   void clear_pressure_memory();
   /// The boundaries with the present pressures of those that have loads.
-  BoxSides sides_now() const { return flow_->sides_now(); }
+  BoundaryConditions sides_now() const { return flow_->sides_now(); }
   /// Bytes of all fields of this rank, work space included.
   std::size_t bytes() const;
 
@@ -113,7 +114,7 @@ private:
   std::unique_ptr<RigidFlow> rigid_;  ///< null if the scene has no rigid bodies
   std::vector<std::unique_ptr<FlowPart>> owned_parts_;
   std::unique_ptr<Scheme> scheme_;
-  std::unique_ptr<Looks> looks_;
+  std::unique_ptr<SynchronisedState> synchronised_;
   std::unique_ptr<AdhesionSpec> adhesion_;  ///< null if nothing adheres
   long sweeps_before_ = 0;                  ///< pressure iterations before a restart
 };

@@ -1,5 +1,5 @@
 // The moving disc: options/disc_in_channel.opts with the strong force, fast method, dt = 6.4/N (docs/method.md, 12).
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 #include "support/scene.hpp"
 
 #include "bodies/fill_phase.hpp"
@@ -54,7 +54,7 @@ History strong_disc(int cells, PressureKind pressure) {
     }
     const std::vector<Phase> *phases = nullptr;
     std::vector<BodyMeasure> bodies;
-    EXPECT_EQ(solver.looks().phases(&phases), 0);
+    EXPECT_EQ(solver.synchronised().phases(&phases), 0);
     EXPECT_EQ(solver.bodies().measure(scene.domain, *phases, solver.state().velocity, strain_energy, &bodies), 0);
     if (n == 0) volume = bodies[0].volume;
     history.drift = std::max(history.drift, std::fabs(bodies[0].volume / volume - 1));

@@ -1,5 +1,5 @@
 // A drop of surface tension that is let go, in two dimensions: the rate, its order, and what flows at rest.
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 #include "support/interface_scene.hpp"
 #include "support/scene.hpp"
 
@@ -56,10 +56,10 @@ Run let_go(int cells, double stretch, double ratio = 1, int finer = 1) {
   Run run;
   const std::vector<Phase> *phases = nullptr;
   EXPECT_EQ(scene.run(0.5, steps * 2), 0);
-  EXPECT_EQ(scene.solver.looks().phases(&phases), 0);
+  EXPECT_EQ(scene.solver.synchronised().phases(&phases), 0);
   const double first = elongation(scene, (*phases)[0]);
   EXPECT_EQ(scene.run(2, steps * 6), 0);
-  EXPECT_EQ(scene.solver.looks().phases(&phases), 0);
+  EXPECT_EQ(scene.solver.synchronised().phases(&phases), 0);
   run.left = elongation(scene, (*phases)[0]) / first;
   FlowExtremes extremes;
   EXPECT_EQ(scene.solver.measure(&extremes), 0);

@@ -1,7 +1,7 @@
 // A ring in two dimensions that bends back to a disc, and one that slips back along itself: the rates. The exact ones
 // are eigenvalues of Stokes flow in the same periodic box, by Fourier transforms; unbounded they are 5/4 E_b/(mu R^3),
 // that of a drop (tests/reference/ring_2d.csv) times n^2 - 3/2, n = 2, and 2 G_s/(mu R) (E_s = 4 G_s there).
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 #include "support/interface_scene.hpp"
 #include "support/scene.hpp"
 
@@ -67,7 +67,7 @@ double slip_rate(int cells) {
 
 double elongation(Scene &scene) {
   const std::vector<Phase> *phases = nullptr;
-  EXPECT_EQ(scene.solver.looks().phases(&phases), 0);
+  EXPECT_EQ(scene.solver.synchronised().phases(&phases), 0);
   double sum = 0;
   for_points(scene.domain, ConstView((*phases)[0].fraction[0]), at_centre,
              [&](const double &q, double x, double y, double) {

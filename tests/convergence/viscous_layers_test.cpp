@@ -146,7 +146,7 @@ ShearErrors shear_errors_across(double lambda, int cells) {
       });
     EXPECT_EQ(add_viscous_force(domain, viscosity, 1, linear, work.rate), 0);
     EXPECT_EQ(add_viscous_force(domain, viscosity, 1, v, work.rate), 0);
-    const BoxSides sides{};
+    const BoundaryConditions sides{};
     const ViscousStep step{sides, 0, dt, rkl_stages(dt, viscous), v, 1, &viscosity};
     EXPECT_EQ(super_time_step(domain, exchange, step, work, star), 0);
     EXPECT_EQ(exchange.update_ghosts(star, 1), 0);
@@ -154,7 +154,7 @@ ShearErrors shear_errors_across(double lambda, int cells) {
     EXPECT_EQ(exchange.update_ghosts(divergence, 1), 0);
     EXPECT_EQ(solver->solve(dt, divergence, pressure, increment), 0);
     EXPECT_EQ(correct_velocity(domain, 1, dt, 0, increment, divergence, star, pressure), 0);
-    EXPECT_EQ(rotate_pressure(domain, viscosity.fields, 0.5, divergence, pressure), 0);
+    EXPECT_EQ(apply_rotational_update(domain, viscosity.fields, 0.5, divergence, pressure), 0);
     v.swap(star);
     EXPECT_EQ(exchange.update_ghosts(v, 2), 0);
   }

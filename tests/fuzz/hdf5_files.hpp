@@ -11,5 +11,4 @@ void write_state(Dice &dice, const std::string &path, const int (&cells)[3]);
 /// Changes the HDF5 file at `path`: objects removed, replaced, renamed, attributes changed.
 void change_objects(Dice &dice, const std::string &path);
 
-
 }  // namespace eulastic::fuzz

@@ -136,8 +136,8 @@ Outcome Fuzzer::judge(const Words &words) {
     return outcome;
   }
   outcome.accepted = true;
-  if (!one_line(Domain::why_not(parsed.config.grid, 1) + ".")) outcome.found = "not one line";
-  if (!Domain::why_not(parsed.config.grid, 1).empty()) return outcome;
+  if (!one_line(Domain::refusal_reason(parsed.config.grid, 1) + ".")) outcome.found = "not one line";
+  if (!Domain::refusal_reason(parsed.config.grid, 1).empty()) return outcome;
   if (!parsed.config.check_only) line.push_back("-check_only");  // with it the files of voxels are read and measured
   const ParseResult checked = parse(line);
   if (checked.error.empty())

@@ -23,7 +23,7 @@ void print_lines(long cases, unsigned long seed) {
     words.insert(words.end(), {"-output_dir", "run"});
     const ParseResult parsed = parse(words);
     const bool grid = parsed.error.empty() && parsed.message.empty();
-    const std::string error = grid ? Domain::why_not(parsed.config.grid, 1) : parsed.error;
+    const std::string error = grid ? Domain::refusal_reason(parsed.config.grid, 1) : parsed.error;
     print(!error.empty()                                      ? error
           : !parsed.message.empty()                           ? "message"
           : !parsed.config.check_only && small(parsed.config) ? "run"

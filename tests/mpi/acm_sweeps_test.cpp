@@ -1,8 +1,8 @@
 // ACM sweeps: any residual is reached on any boundaries, the same bits on any decomposition, what memory buys.
-#include "pressure/acm_sweeps.hpp"
 #include "base/rank_zero.hpp"
 #include "diagnostics/state_hash.hpp"
 #include "grid/threads.hpp"
+#include "pressure/acm_iterations.hpp"
 #include "pressure/smac.hpp"
 #include "support/poisson_scene.hpp"
 
@@ -15,8 +15,8 @@ namespace {
 
 struct Sweeper : PoissonScene {
   WorkSpace work{domain};
-  AcmSweepSolver solver;
-  Sweeper(MPI_Comm comm, const GridSpec &spec, const AcmSweepOptions &options) : PoissonScene(comm, spec) {
+  AcmIterativeSolver solver;
+  Sweeper(MPI_Comm comm, const GridSpec &spec, const AcmIterativeOptions &options) : PoissonScene(comm, spec) {
     EXPECT_EQ(solver.create(domain, *exchange, options, work), 0);
   }
   // Solves to `relative` times the rms of the divergence.

@@ -2,7 +2,7 @@
 #include "base/rank_zero.hpp"
 #include "bodies/labels.hpp"
 #include "diagnostics/flow_measures.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "support/body_scene.hpp"
 
 using namespace eulastic;
@@ -126,7 +126,7 @@ TEST(BodyMeasures, StretchUndoneGivesTheShapeAtRest) {
       const BodyMeasure body = scene.measure()[0];
       EXPECT_GT(body.taylor_deformation, .3);
       EXPECT_NEAR(body.rest_deformation, (longer - 1) / (longer + 1), 1e-3);
-      scene.phases[0].tensor.field = tensor_at_rest(scene.domain);  // without the stretch it is the shape's
+      scene.phases[0].tensor.field = undeformed_tensor(scene.domain);  // without the stretch it is the shape's
       EXPECT_NEAR(scene.measure()[0].rest_deformation, body.taylor_deformation, 1e-14);
     }
   }

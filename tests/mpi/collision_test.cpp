@@ -3,7 +3,7 @@
 #include "diagnostics/energy_rates.hpp"
 #include "output/saved_state.hpp"
 #include "scene/scene.hpp"
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 #include "support/all_bodies.hpp"
 #include "support/command_line.hpp"
 #include "support/files.hpp"
@@ -47,8 +47,8 @@ std::vector<double> volumes(Solver &solver) {
   std::vector<double> all;
   const std::vector<Phase> *phases = nullptr;
   std::vector<BodyInBox> boxed;
-  EXPECT_EQ(solver.looks().phases(&phases), 0);
-  EXPECT_EQ(solver.looks().bodies(&boxed), 0);
+  EXPECT_EQ(solver.synchronised().phases(&phases), 0);
+  EXPECT_EQ(solver.synchronised().bodies(&boxed), 0);
   EXPECT_EQ(solver.bodies().measure(solver.domain(), *phases, solver.state().velocity, strain_energy, &owned, boxed),
             0);
   const int count = solver.bodies().bodies();

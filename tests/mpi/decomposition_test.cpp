@@ -103,7 +103,7 @@ TEST(Decomposition, CoversEveryCellOnceAndAgreesWithTheDmda) {
           spec.cells = cells;
           spec.boundary = {Boundary::periodic, y, Boundary::wall};
           spec.processors = {px, py, 0};
-          if (!Domain::why_not(spec, ranks).empty()) continue;
+          if (!Domain::refusal_reason(spec, ranks).empty()) continue;
           check(spec);
           ++tried;
           split_x += px > 1;
@@ -122,7 +122,7 @@ TEST(Decomposition, GivesFieldsAsVectorsOfTheDmda) {
         GridSpec spec;
         spec.cells = cells;
         spec.boundary = {x, Boundary::wall, Boundary::periodic};
-        if (!Domain::why_not(spec, world_size()).empty()) continue;
+        if (!Domain::refusal_reason(spec, world_size()).empty()) continue;
         Domain domain;
         ASSERT_EQ(domain.create(run_communicator(), spec), 0);
         Field before(domain, 1), after(domain, 1);

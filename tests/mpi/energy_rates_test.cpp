@@ -22,7 +22,7 @@ Function wild(double a) {
 
 struct CellBlock {
   Domain domain;
-  BoxSides walls{};
+  BoundaryConditions walls{};
   Field velocity;
   std::vector<Phase> phases;
 
@@ -103,7 +103,7 @@ Measures measure(CellBlock &box, double viscosity) {
   box.fill_ghosts();
   EXPECT_EQ(measure_flow(box.domain, box.velocity, {1.3, viscosity, 0, 0}, &m.flow), 0);
   EXPECT_EQ(measure_phases(box.domain, box.phases, &m.flow), 0);
-  const EnergyNumbers numbers{1.3, viscosity, {0.3, 0.2, 0}, &box.walls};
+  const EnergyParameters numbers{1.3, viscosity, {0.3, 0.2, 0}, &box.walls};
   EXPECT_EQ(measure_energy_rates(box.domain, box.velocity, box.phases, numbers, &m.rates), 0);
   return m;
 }
@@ -199,36 +199,36 @@ TEST(EnergyBudget, FindsTheRowSinceWhichARunMakesEnergy) {
   EnergyBudget budget;
   for (int n = 0; n <= 100; ++n) budget.advance(n, driven(0.9));  // a tenth is lost
   EXPECT_NEAR(budget.lost(), 10, 1e-12);
-  EXPECT_EQ(budget.made_share(), 0);
+  EXPECT_EQ(budget.generated_share(), 0);
   EnergyBudget resumed;
   resumed.set_numbers(budget.numbers());
-  resumed.set_made_numbers(budget.made_numbers());
+  resumed.set_generated_numbers(budget.generated_numbers());
   // Between two rows the dissipation goes up, where it is not known within 0.3; from the second on 0.5 are made per
   // time.
   for (int n = 1; n <= 10; ++n) resumed.advance(100 + n, driven(1.5));
   EXPECT_NEAR(resumed.lost(), 10 - 0.2 - 4.5, 1e-12);
-  EXPECT_NEAR(resumed.made_share(), 9 * 0.5 / (1 + 9), 1e-12);
-  EXPECT_EQ(resumed.made_share_max(), resumed.made_share());
+  EXPECT_NEAR(resumed.generated_share(), 9 * 0.5 / (1 + 9), 1e-12);
+  EXPECT_EQ(resumed.generated_share_max(), resumed.generated_share());
   for (int n = 11; n <= 100; ++n) resumed.advance(100 + n, driven(0.9));
-  EXPECT_LT(resumed.made_share(), 0.05);
-  EXPECT_NEAR(resumed.made_share_max(), 0.45, 1e-12);
-  EXPECT_NEAR(resumed.handled(), 1 + 200, 1e-12);
+  EXPECT_LT(resumed.generated_share(), 0.05);
+  EXPECT_NEAR(resumed.generated_share_max(), 0.45, 1e-12);
+  EXPECT_NEAR(resumed.throughput(), 1 + 200, 1e-12);
 }
 
 TEST(EnergyBudget, MakesNothingAtOnceAndNothingThatWasLent) {
   for (const bool lent : {false, true}) {
     EnergyBudget budget;
-    budget.allow_return(lent);
+    budget.allow_energy_return(lent);
     const double held[] = {1, 3, 1, 3};  // a start at once; then two are lost and come back
     for (int n = 0; n < 4; ++n) {
       EnergyState s;
       s.kinetic = held[n];
       budget.advance(n, s);
       if (n < 3) {
-        EXPECT_EQ(budget.made_share_max(), 0);
+        EXPECT_EQ(budget.generated_share_max(), 0);
       }
     }
-    EXPECT_EQ(budget.made_share_max(), lent ? 0 : 2);
+    EXPECT_EQ(budget.generated_share_max(), lent ? 0 : 2);
   }
 }
 
@@ -247,13 +247,13 @@ TEST(EnergyBudget, CountsElasticEnergyFromItsLeast) {
     advance(n, 0);
     EnergyBudget resumed;
     resumed.set_numbers(parts.numbers());
-    resumed.set_made_numbers(parts.made_numbers());
+    resumed.set_generated_numbers(parts.generated_numbers());
     parts = resumed;
   }
-  EXPECT_NEAR(whole.made_share_max(), 0.01, 1e-3);
+  EXPECT_NEAR(whole.generated_share_max(), 0.01, 1e-3);
   for (int n = 41; n <= 44; ++n) advance(n, 0.5);
-  EXPECT_NEAR(whole.made_share_max(), 0.5, 0.02);
-  EXPECT_EQ(parts.made_share_max(), whole.made_share_max());
+  EXPECT_NEAR(whole.generated_share_max(), 0.5, 0.02);
+  EXPECT_EQ(parts.generated_share_max(), whole.generated_share_max());
 }
 
 // What swings between rows may have any mean.
@@ -266,8 +266,8 @@ TEST(EnergyBudget, MakesNothingThatRowsDoNotKnow) {
     budget.advance(n, s);
   }
   EXPECT_NEAR(budget.lost(), -0.4 * 50, 1e-12);
-  EXPECT_NEAR(budget.uncertain(), 50, 1e-12);
-  EXPECT_EQ(budget.made_share_max(), 0);
+  EXPECT_NEAR(budget.uncertainty(), 50, 1e-12);
+  EXPECT_EQ(budget.generated_share_max(), 0);
 }
 
 }  // namespace

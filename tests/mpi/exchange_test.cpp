@@ -1,8 +1,8 @@
 // Ghost exchange: every ghost inside the domain and across periodic sides, at odd sizes, in every decomposition.
 #include "base/rank_zero.hpp"
+#include "field/boundaries.hpp"
 #include "field/carried_tensor.hpp"
 #include "field/ghost_exchange.hpp"
-#include "field/sides.hpp"
 #include "grid/domain.hpp"
 #include "pressure/multigrid_level.hpp"
 
@@ -35,7 +35,7 @@ void for_each_grid(const std::function<void(const Domain &)> &visit) {
           spec.cells = cells;
           for (int d = 0; d < 3; ++d) spec.boundary[d] = sides >> d & 1 ? Boundary::wall : Boundary::periodic;
           spec.processors = {px, py, 0};
-          if (!Domain::why_not(spec, ranks).empty()) continue;
+          if (!Domain::refusal_reason(spec, ranks).empty()) continue;
           Domain domain;
           ASSERT_EQ(domain.create(run_communicator(), spec), 0);
           SCOPED_TRACE(::testing::Message()
@@ -76,7 +76,7 @@ void prepare(const Box &box, Field &block) {
 bool comes_whole(const Box &box, int width, int j, int k) {
   const int row[3] = {0, j, k};
   for (int d = 1; d < 3; ++d) {
-    const Box::Range near = box.points_near(d, true, width);
+    const Box::Range near = box.points_with_ghosts(d, true, width);
     if (row[d] < near.begin || row[d] >= near.end) return false;
   }
   return box.whole_rows() && !is_owned(box, {0, j, k});
@@ -168,10 +168,10 @@ TEST(GhostExchange, KeepsSeveralBlocksInFlight) {
     Field a(domain, 3), b(domain, 3), c(domain, 1), d(domain, 3);
     for (Field *block : {&a, &b, &c, &d}) prepare(domain, *block);
     for (std::ptrdiff_t n = 0; n < domain.layout().size * 3; ++n) b.data()[n] *= 2;  // the twin of a must not get a's
-    for (const WantedGhosts &wanted : {WantedGhosts{&a, 3}, WantedGhosts{&b, 3}})
+    for (const GhostUpdate &wanted : {GhostUpdate{&a, 3}, GhostUpdate{&b, 3}})
       ASSERT_EQ(exchange.begin_update(wanted), 0);
     ASSERT_EQ(exchange.update_ghosts({{&c, 1}, {&d, 1}}), 0);
-    for (const WantedGhosts &wanted : {WantedGhosts{&b, 3}, WantedGhosts{&a, 3}})
+    for (const GhostUpdate &wanted : {GhostUpdate{&b, 3}, GhostUpdate{&a, 3}})
       ASSERT_EQ(exchange.end_update(wanted), 0);
     for (std::ptrdiff_t n = 0; n < domain.layout().size * 3; ++n) b.data()[n] /= 2;
     EXPECT_EQ(count_errors(domain, a, 3), 0);
@@ -236,7 +236,7 @@ TEST(WallGhostsOnRanks, EqualThoseOfOneRank) {
     spec.processors = {0, 0, 0};
     Domain whole;
     ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
-    BoxSides walls{};
+    BoundaryConditions walls{};
     for (int d = 0; d < 3; ++d)
       for (int side = 0; side < 2; ++side) walls[d][side].motion = {{.1 + d, .2 + side, .3 - d}, 1.7, .3 * side};
     const int dimension = domain.dimension();

@@ -1,8 +1,8 @@
 // Flow measures against integrals known in closed form, and the same bits on any ranks as on one.
 #include "diagnostics/flow_measures.hpp"
 #include "base/rank_zero.hpp"
+#include "field/boundaries.hpp"
 #include "field/ghost_exchange.hpp"
-#include "field/sides.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ struct Flow {
     phases.push_back(std::move(phase));
   }
 
-  FlowMeasures measure(const std::array<Function, 3> &field, const FlowNumbers &numbers) {
+  FlowMeasures measure(const std::array<Function, 3> &field, const FlowParameters &numbers) {
     for (int c = 0; c < domain.dimension(); ++c) set(velocity[c], at_face[c], field[c]);
     GhostExchange exchange(domain);
     exchange.update_ghosts(velocity, 1);
@@ -56,7 +56,7 @@ struct Flow {
   }
 
   Domain domain;
-  BoxSides walls{};
+  BoundaryConditions walls{};
   Field velocity;
   std::vector<Phase> phases;
 };

@@ -51,7 +51,7 @@ struct Flow : CellBlock {
 
   void stop_walls() {
     for (auto &pair : sides)
-      for (Side &side : pair) side.motion.velocity = {};
+      for (BoundaryCondition &side : pair) side.motion.velocity = {};
   }
   Field field() const { return Field(domain, domain.dimension()); }
   double cycle_viscosity() const { return std::sqrt(fluid.viscosity * phases[0].material.viscosity) / fluid.density; }
@@ -116,7 +116,7 @@ TEST(ImplicitViscosity, SolvesBothSystemsOfSdirk2) {
 TEST(ImplicitViscosity, IsOfSecondOrderBesideMovingWalls) {
   Flow flow(false, {true, true, true}, 5);
   for (auto &pair : flow.sides)
-    for (Side &side : pair) side.motion.frequency = 2;
+    for (BoundaryCondition &side : pair) side.motion.frequency = 2;
   const double end = 0.4;
   Field shape = flow.field();
   for_inner_faces(flow.domain, [&](int c, int i, int j, int k) { shape[c](i, j, k) = flow.velocity[c](i, j, k); });

@@ -124,7 +124,7 @@ TEST(InterfaceOnRanks, HasTheBitsOfWholeRows) {
           InterfaceScene whole, part;
           ASSERT_EQ(whole.create(PETSC_COMM_SELF, spec), 0);
           spec.processors = {px, py, 0};
-          if (!Domain::why_not(spec, ranks).empty()) continue;
+          if (!Domain::refusal_reason(spec, ranks).empty()) continue;
           ASSERT_EQ(part.create(run_communicator(), spec), 0);
           SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << " on " << px
                                             << " x " << py << ", walls " << walls);

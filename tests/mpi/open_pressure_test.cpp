@@ -1,7 +1,7 @@
 // The pressure solvers where the pressure is given on some sides: the increment is 0 there and its mean is not free.
 #include "base/rank_zero.hpp"
-#include "field/open_sides.hpp"
-#include "pressure/acm_sweeps.hpp"
+#include "field/open_boundaries.hpp"
+#include "pressure/acm_iterations.hpp"
 #include "pressure/ksp.hpp"
 #include "pressure/smac.hpp"
 #include "support/on_one_rank.hpp"
@@ -28,7 +28,7 @@ struct OpenScene : PoissonScene {
       EXPECT_EQ(ksp->create(domain, *exchange), 0);
       solver = std::move(ksp);
     } else {
-      auto sweeps = std::make_unique<AcmSweepSolver>();
+      auto sweeps = std::make_unique<AcmIterativeSolver>();
       const bool coarse = kind != Kind::descent;
       EXPECT_EQ(
           sweeps->create(domain, *exchange, {coarse ? 60 : 4000, kind == Kind::remembering ? 2 : 0, coarse}, work), 0);

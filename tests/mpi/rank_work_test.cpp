@@ -3,7 +3,7 @@
 #include "base/rank_zero.hpp"
 #include "boxes/share_out.hpp"
 #include "scene/scene.hpp"
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 #include "support/command_line.hpp"
 #include "support/lopsided.hpp"
 
@@ -31,7 +31,7 @@ RankWork work_of(Solver &solver) {
   work.sum = flow_work * solver.domain().cell_count();
   for (const Phase &phase : solver.state().phases)
     if (!phase.boxed) work.sum += phase_work(phase.material, false) * double(phase.rows.cells());
-  EXPECT_EQ(solver.looks().bodies(&bodies), 0);
+  EXPECT_EQ(solver.synchronised().bodies(&bodies), 0);
   for (const BodyInBox &body : bodies) {
     const double own = phase_work(body.phase->material, true) * body.box->cell_count();
     work.sum += own;

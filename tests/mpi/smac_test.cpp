@@ -3,7 +3,7 @@
 #include "base/exact_sum.hpp"
 #include "base/rank_zero.hpp"
 #include "diagnostics/state_hash.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "support/lopsided.hpp"
 
 #include <gtest/gtest.h>

@@ -77,7 +77,7 @@ std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps, double force =
   EXPECT_EQ(scene.solver.measure(&extremes), 0);
   EXPECT_GT(extremes.max_speed(), 1e-2);
   EXPECT_GT(extremes.stiffness, 1.01 * scene.solver.state().phases[0].material.shear_modulus) << "bodies deform";
-  EXPECT_EQ(extremes.first_bad, -1);
+  EXPECT_EQ(extremes.first_non_finite, -1);
   std::uint64_t hash = 0;
   EXPECT_EQ(state_hash(&scene.solver, &hash), 0);
   return hash;

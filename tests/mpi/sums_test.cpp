@@ -37,7 +37,7 @@ void for_each_split(const Int3 &cells, int walls, const std::function<void(const
   for (int px = 1; px <= ranks; ++px)
     for (int py = 1; py <= ranks; ++py) {
       const GridSpec spec = box(cells, walls, {px, py, 0});
-      if (!Domain::why_not(spec, ranks).empty()) continue;
+      if (!Domain::refusal_reason(spec, ranks).empty()) continue;
       Domain domain;
       ASSERT_EQ(domain.create(run_communicator(), spec), 0);
       SCOPED_TRACE(::testing::Message() << cells[0] << " x " << cells[1] << " x " << cells[2] << " on "

@@ -77,7 +77,7 @@ TEST_P(EigenModes, GoThroughTheStagesOfANumber) {
         work.rate[c](i, row.j, row.k) = first * mode(c, row, i);
         work.slope[c](i, row.j, row.k) = slope * mode(c, row, i);
       }
-  const BoxSides sides{};
+  const BoundaryConditions sides{};
   const ViscousStep step{sides, 0, dt, stages, velocity, viscosity, nullptr, stressed_rows(domain, phases)};
   ASSERT_EQ(super_time_step(domain, exchange, step, work, result), 0);
   for (int c = 0; c < 3; ++c) {

@@ -45,7 +45,7 @@ End run(MPI_Comm comm, const Case &c) {
   spec.pressure = PressureKind::smac;
   spec.fluid.density = 1.3;
   spec.fluid.viscosity = 0.3;
-  spec.sides[2][1].kind = SideKind::symmetry;
+  spec.sides[2][1].kind = BoundaryKind::symmetry;
   EXPECT_EQ(scene.create(comm, grid, spec), 0);
   const auto ball = [&](Real3 centre, double radius) {
     if (flat) centre[2] = 0.25;

@@ -41,7 +41,7 @@ struct MeasuredBlock : CellBlock {
   }
   EnergyRates rates() const {
     EnergyRates rates;
-    const EnergyNumbers numbers{fluid.density, fluid.viscosity, {}, &sides, 0, &viscosity.fields};
+    const EnergyParameters numbers{fluid.density, fluid.viscosity, {}, &sides, 0, &viscosity.fields};
     EXPECT_EQ(measure_energy_rates(domain, velocity, phases, numbers, &rates), 0);
     return rates;
   }
@@ -111,7 +111,7 @@ std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps) {
   spec.fluid.density = 1.3;
   spec.fluid.viscosity = 0.3;
   spec.sides[1][1].motion = {{0.4, 0, 0}, 0.3, 0.2};
-  spec.sides[2][0].kind = SideKind::symmetry;
+  spec.sides[2][0].kind = BoundaryKind::symmetry;
   EXPECT_EQ(scene.create(comm, grid, spec), 0);
   const double height = grid.length[1];
   set(scene.domain, scene.solver.state().velocity[0], at_face[0],
@@ -129,7 +129,7 @@ std::uint64_t hash_after(MPI_Comm comm, const Case &c, int steps) {
   for (int n = 0; n < steps; ++n) {
     FlowExtremes extremes;
     EXPECT_EQ(scene.solver.measure(&extremes), 0);
-    EXPECT_EQ(extremes.first_bad, -1);
+    EXPECT_EQ(extremes.first_non_finite, -1);
     EXPECT_EQ(scene.solver.step(0.5 * scene.solver.limits(extremes).automatic()), 0);
   }
   std::uint64_t hash = 0;

@@ -34,8 +34,8 @@ inline int calls(double cells) { return std::max(1, static_cast<int>(4.2e6 / cel
 
 /// Times `verb` and reports ns per cell; from the flops GFlop/s and the share of the peak; from the bytes GB/s and the
 /// share of the triad; from both the time predicted by the slower of the two.
-template <class Verb>
-void measure(benchmark::State &state, const Work &work, Verb verb) {
+template <class Event>
+void measure(benchmark::State &state, const Work &work, Event verb) {
   bool failed = verb() != 0;  // warms up
   PetscLogDouble before = 0, after = 0;
   (void)PetscGetFlops(&before);

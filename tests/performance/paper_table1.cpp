@@ -41,7 +41,7 @@ EULASTIC_INLINE void move_tensor(const Fields &t, int block, int k, const Stagge
     for (int d = 0; d < 3; ++d) {
       const ConstView face = t.velocity[d];
       batch.ahead[0] = first == 0 ? face.origin + 2 * face.sz : nullptr;
-      kernels::carry_velocity(batch, face, d, at.data(), 3, carried[d]);
+      kernels::average_velocity(batch, face, d, at.data(), 3, carried[d]);
     }
     for (int c = first; c < last; ++c) {
       const ConstView q = t.tensor[c];

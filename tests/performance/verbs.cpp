@@ -6,7 +6,7 @@
 #include "flow/projection.hpp"
 #include "flow/super_time_stepping.hpp"
 #include "pressure/acm.hpp"
-#include "pressure/acm_sweeps.hpp"
+#include "pressure/acm_iterations.hpp"
 
 using namespace eulastic;
 using performance::Filling;
@@ -130,7 +130,7 @@ constexpr double cycle_bytes = cycle_finest + (cycle_finest + (8 + 8 + 16) + 16 
 
 void sweep(benchmark::State &state, bool multigrid) {
   verb(state, Filling::all, [&](Scratch &s, auto measure) {
-    AcmSweepSolver solver;
+    AcmIterativeSolver solver;
     WorkSpace work(s.domain);
     if (solver.create(s.domain, s.exchange, {sweeps, 0, multigrid}, work) != 0) return state.SkipWithError("no solver");
     test::set(s.domain, s.scalar[0], at_centre,

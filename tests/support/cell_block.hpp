@@ -1,7 +1,7 @@
 // A block of cells between boundaries of several kinds, with a random flow and a phase of another viscosity everywhere.
 #pragma once
 
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "flow/viscosity.hpp"
 #include "support/scene.hpp"
 
@@ -17,7 +17,7 @@ inline Function wild(double a) {
 
 struct CellBlock {
   Domain domain;
-  BoxSides sides{};
+  BoundaryConditions sides{};
   Fluid fluid;
   std::vector<Phase> phases{1};
   Field velocity;
@@ -31,7 +31,7 @@ struct CellBlock {
     EXPECT_EQ(domain.create(comm, spec), 0);
     const int dim = domain.dimension();
     sides[0][0].motion.velocity = {0, 0.7, flat ? 0 : -0.3};
-    sides[1][0].kind = SideKind::symmetry;
+    sides[1][0].kind = BoundaryKind::symmetry;
     sides[1][1].motion.velocity = {-0.4, 0, flat ? 0 : 0.5};
     sides[2][1].motion.velocity = {0.2, 0.6, 0};
     fluid.density = 1.3;
@@ -45,7 +45,7 @@ struct CellBlock {
     fill_wall_ghosts_velocity(domain, sides, 0, velocity, 2);
     Phase &phase = phases[0];
     phase.fraction = Field(domain, 1);
-    phase.tensor.field = tensor_at_rest(domain);
+    phase.tensor.field = undeformed_tensor(domain);
     set(domain, phase.fraction[0], at_centre, [](double x, double y, double z) { return std::fabs(wild(4)(x, y, z)); });
     EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
     EXPECT_EQ(exchange.update_ghosts(phase.fraction, 2), 0);

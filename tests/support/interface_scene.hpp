@@ -3,8 +3,8 @@
 
 #include "base/exact_sum.hpp"
 #include "bodies/volume_fraction.hpp"
+#include "field/boundaries.hpp"
 #include "field/ghost_exchange.hpp"
-#include "field/sides.hpp"
 #include "solids/interface.hpp"
 
 #include <cmath>
@@ -128,7 +128,7 @@ public:
   PetscErrorCode update_velocity_ghosts() {
     PetscFunctionBeginUser;
     PetscCall(exchange_->update_ghosts(velocity, 3));
-    fill_wall_ghosts_velocity(domain, BoxSides{}, 0, velocity, 3);
+    fill_wall_ghosts_velocity(domain, BoundaryConditions{}, 0, velocity, 3);
     PetscFunctionReturn(0);
   }
 

@@ -19,7 +19,7 @@ inline GridSpec lopsided(GridSpec spec) {
 /// Adds `spec`, if its cells can be shared as it says, evenly and lopsided.
 inline void add_splits(const GridSpec &spec, std::vector<GridSpec> *specs) {
   const Int3 &parts = spec.processors;
-  if (!Domain::why_not(spec, parts[0] * parts[1] * parts[2]).empty()) return;
+  if (!Domain::refusal_reason(spec, parts[0] * parts[1] * parts[2]).empty()) return;
   specs->push_back(spec);
   if (parts[1] * parts[2] > 1) specs->push_back(lopsided(spec));
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/rank_zero.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 namespace eulastic::test {
 

@@ -3,7 +3,7 @@
 
 #include "base/exact_sum.hpp"
 #include "base/rank_zero.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 #include "pressure/pressure_solver.hpp"
 #include "support/lopsided.hpp"
 

@@ -69,7 +69,7 @@ struct Scene {
     FlowExtremes extremes;
     for (int n = 0; n < steps; ++n) {
       PetscCall(solver.measure(&extremes));
-      PetscCheck(extremes.first_bad == -1, domain.comm(), PETSC_ERR_FP, "step %d", n);
+      PetscCheck(extremes.first_non_finite == -1, domain.comm(), PETSC_ERR_FP, "step %d", n);
       PetscCall(solver.step(share * solver.limits(extremes).automatic()));
     }
     PetscFunctionReturn(0);

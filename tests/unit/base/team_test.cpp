@@ -32,13 +32,13 @@ TEST_P(ThreadTeamTest, EveryMemberDoesItsPartOnce) {
         ++done[thread];
         if (region < size) by[thread] = std::this_thread::get_id();
         EXPECT_EQ(by[thread], std::this_thread::get_id());
-        EXPECT_TRUE(ThreadTeam::is_in_region());
+        EXPECT_TRUE(ThreadTeam::is_in_parallel_region());
       });
       for (int t = 0; t < members; ++t) ++wanted[t];
     }
     EXPECT_EQ(done, wanted);
     EXPECT_EQ(by[0], std::this_thread::get_id());
-    EXPECT_FALSE(ThreadTeam::is_in_region());
+    EXPECT_FALSE(ThreadTeam::is_in_parallel_region());
   }
 }
 

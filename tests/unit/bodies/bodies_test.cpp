@@ -2,7 +2,7 @@
 #include "bodies/fill_phase.hpp"
 #include "bodies/shapes.hpp"
 #include "bodies/volume_fraction.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ struct Scene {
   }
 };
 
-std::string why_not(const SpeciesSpec &spec, const GridSpec &grid) {
+std::string refusal_reason(const SpeciesSpec &spec, const GridSpec &grid) {
   Places places;
   return place_bodies(spec, grid, &places);
 }
@@ -230,36 +230,37 @@ TEST(VolumeFraction, MirroredAndShiftedScenesGiveTheSameBits) {
 
 TEST(Placement, RefusesWhatDoesNotFit) {
   const GridSpec open = box({16, 16, 16}, {4, 4, 4}), walls = box({16, 16, 16}, {4, 4, 4}, Boundary::wall);
-  EXPECT_EQ(why_not(species(Shape::sphere, 1, {2, 0.5, 2}), open), "");
-  EXPECT_NE(why_not(species(Shape::sphere, 1, {2, 0.5, 2}), walls).find("reaches into the wall: y"), std::string::npos);
-  EXPECT_EQ(why_not(species(Shape::sphere, 1, {2, 1, 2}), walls), "");
-  EXPECT_EQ(why_not(species(Shape::sphere, 2, {2, 2, 2}), walls), "");
-  EXPECT_NE(why_not(species(Shape::sphere, 2.1, {2, 2, 2}), open).find("long in x"), std::string::npos);
-  EXPECT_NE(why_not(species(Shape::sphere, 1, {2, 2, 4.5}), open).find("outside the box"), std::string::npos);
-  EXPECT_NE(why_not(species(Shape::sphere, 0, {2, 2, 2}), open).find("radius"), std::string::npos);
+  EXPECT_EQ(refusal_reason(species(Shape::sphere, 1, {2, 0.5, 2}), open), "");
+  EXPECT_NE(refusal_reason(species(Shape::sphere, 1, {2, 0.5, 2}), walls).find("reaches into the wall: y"),
+            std::string::npos);
+  EXPECT_EQ(refusal_reason(species(Shape::sphere, 1, {2, 1, 2}), walls), "");
+  EXPECT_EQ(refusal_reason(species(Shape::sphere, 2, {2, 2, 2}), walls), "");
+  EXPECT_NE(refusal_reason(species(Shape::sphere, 2.1, {2, 2, 2}), open).find("long in x"), std::string::npos);
+  EXPECT_NE(refusal_reason(species(Shape::sphere, 1, {2, 2, 4.5}), open).find("outside the box"), std::string::npos);
+  EXPECT_NE(refusal_reason(species(Shape::sphere, 0, {2, 2, 2}), open).find("radius"), std::string::npos);
   // A flat cell fits where its bounding sphere does not, until it is turned.
   SpeciesSpec cell = species(Shape::biconcave, 1.5, {2, 0.6, 2});
-  EXPECT_EQ(why_not(cell, walls), "");
+  EXPECT_EQ(refusal_reason(cell, walls), "");
   cell.orientation = {90, 0, 0};
-  EXPECT_NE(why_not(cell, walls), "");
+  EXPECT_NE(refusal_reason(cell, walls), "");
   SpeciesSpec tube = species(Shape::cylinder, 1, {2, 0.5, 2});
   tube.axis = 0;
-  EXPECT_EQ(why_not(tube, walls), "");
+  EXPECT_EQ(refusal_reason(tube, walls), "");
   tube.orientation = {0, 0, 1};
-  EXPECT_NE(why_not(tube, walls), "");
+  EXPECT_NE(refusal_reason(tube, walls), "");
   SpeciesSpec slab = species(Shape::slab, 0, {});
   slab.interval = {1, 1};
-  EXPECT_NE(why_not(slab, walls).find("low < high"), std::string::npos);
+  EXPECT_NE(refusal_reason(slab, walls).find("low < high"), std::string::npos);
   SpeciesSpec disc = species(Shape::sphere, 1, {2, 2, 99});
-  EXPECT_EQ(why_not(disc, box({16, 16, 1}, {4, 4, 4})), "");
+  EXPECT_EQ(refusal_reason(disc, box({16, 16, 1}, {4, 4, 4})), "");
   disc.orientation = {10, 0, 0};
-  EXPECT_NE(why_not(disc, box({16, 16, 1}, {4, 4, 4})).find("about z"), std::string::npos);
+  EXPECT_NE(refusal_reason(disc, box({16, 16, 1}, {4, 4, 4})).find("about z"), std::string::npos);
   disc = species(Shape::sphere, 1, {});
   disc.placement = Placement::lattice;
   disc.count = {1, 1, 0};
-  EXPECT_NE(why_not(disc, open), "");
+  EXPECT_NE(refusal_reason(disc, open), "");
   disc.count = {3, 1, 1};
-  EXPECT_EQ(why_not(disc, open), "");  // overlap is allowed
+  EXPECT_EQ(refusal_reason(disc, open), "");  // overlap is allowed
 }
 
 TEST(Placement, ReadsListsAndNamesBadLines) {
@@ -271,7 +272,7 @@ TEST(Placement, ReadsListsAndNamesBadLines) {
   const GridSpec grid = box({16, 16, 16}, {4, 4, 4}, Boundary::wall);
   const auto with = [&](const char *content) {
     std::ofstream(path) << content;
-    return why_not(spec, grid);
+    return refusal_reason(spec, grid);
   };
   EXPECT_EQ(with("x, y, z\r\n1,2,3\r\n\n 2 , 2 ,1, 10, 20, 30"), "");
   Places places;
@@ -292,7 +293,7 @@ TEST(Placement, ReadsListsAndNamesBadLines) {
   EXPECT_NE(with("1,2,3\n1,0.2,3\n").find("body 2"), std::string::npos);
   EXPECT_NE(with("x,y,z\n").find("holds no numbers"), std::string::npos);
   std::remove(path.c_str());
-  EXPECT_NE(why_not(spec, grid).find("cannot read"), std::string::npos);
+  EXPECT_NE(refusal_reason(spec, grid).find("cannot read"), std::string::npos);
 }
 
 }  // namespace

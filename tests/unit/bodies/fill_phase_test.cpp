@@ -1,7 +1,7 @@
 // Phases at the start: fractions, labels and the stretch of placed bodies.
 #include "bodies/fill_phase.hpp"
 #include "bodies/shapes.hpp"
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 #include <gtest/gtest.h>
 

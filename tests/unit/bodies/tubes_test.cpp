@@ -51,7 +51,7 @@ double volume(const SpeciesSpec &spec, const GridSpec &grid_spec) {
   return sum * domain.cell_volume();
 }
 
-std::string why_not(const SpeciesSpec &spec, const GridSpec &grid) {
+std::string refusal_reason(const SpeciesSpec &spec, const GridSpec &grid) {
   Places places;
   return place_bodies(spec, grid, &places);
 }
@@ -128,16 +128,18 @@ TEST(Tube, IsZeroInsideAndOneOutside) {
 
 TEST(Tube, RefusesALumenThatLeavesTheBox) {
   const GridSpec grid = box({16, 16, 16}, {4, 4, 4});
-  EXPECT_EQ(why_not(tube(0, 2, {2, 2, 2}), grid), "");
-  EXPECT_NE(why_not(tube(0, 2, {2, 2.1, 2}), grid).find("lumen leaves the box: y"), std::string::npos);
-  EXPECT_NE(why_not(constricted(0, 1, {1, 2, 2}, 0.5, 3), grid).find("throat leaves the box: x"), std::string::npos);
-  EXPECT_NE(why_not(constricted(0, 1, {2, 2, 2}, 1, 3), grid).find("narrower"), std::string::npos);
-  EXPECT_NE(why_not(constricted(0, 1, {2, 2, 2}, 0.5, 0), grid).find("length"), std::string::npos);
-  EXPECT_NE(why_not(constricted(2, 1, {2, 2, 2}, 0.5, 2), box({16, 16, 1}, {4, 4, 4})).find("2-D"), std::string::npos);
+  EXPECT_EQ(refusal_reason(tube(0, 2, {2, 2, 2}), grid), "");
+  EXPECT_NE(refusal_reason(tube(0, 2, {2, 2.1, 2}), grid).find("lumen leaves the box: y"), std::string::npos);
+  EXPECT_NE(refusal_reason(constricted(0, 1, {1, 2, 2}, 0.5, 3), grid).find("throat leaves the box: x"),
+            std::string::npos);
+  EXPECT_NE(refusal_reason(constricted(0, 1, {2, 2, 2}, 1, 3), grid).find("narrower"), std::string::npos);
+  EXPECT_NE(refusal_reason(constricted(0, 1, {2, 2, 2}, 0.5, 0), grid).find("length"), std::string::npos);
+  EXPECT_NE(refusal_reason(constricted(2, 1, {2, 2, 2}, 0.5, 2), box({16, 16, 1}, {4, 4, 4})).find("2-D"),
+            std::string::npos);
   SpeciesSpec two = tube(0, 1, {2, 2, 2});
   two.placement = Placement::lattice;
-  EXPECT_NE(why_not(two, grid).find("placed once"), std::string::npos);
+  EXPECT_NE(refusal_reason(two, grid).find("placed once"), std::string::npos);
   two.placement = Placement::one;
   two.orientation = {0, 0, 90};
-  EXPECT_NE(why_not(two, grid).find("cannot be turned"), std::string::npos);
+  EXPECT_NE(refusal_reason(two, grid).find("cannot be turned"), std::string::npos);
 }

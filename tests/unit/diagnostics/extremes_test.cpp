@@ -39,9 +39,9 @@ TEST(Extremes, TraceIsThatOfCentresThatEvolve) {
   EXPECT_EQ(measure().trace[0], 7);
   *outer = 9;
   EXPECT_EQ(measure().trace[0], 7);
-  EXPECT_EQ(measure().first_bad, -1);
+  EXPECT_EQ(measure().first_non_finite, -1);
   *outer = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_GE(measure().first_bad, 0) << "wherever it is";
+  EXPECT_GE(measure().first_non_finite, 0) << "wherever it is";
 }
 
 }  // namespace

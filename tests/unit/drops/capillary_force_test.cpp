@@ -139,7 +139,7 @@ Result find(const OnGrid &grid, const Box &box, GhostExchange *exchange, const P
   capillary.add_force(scale, result.force, {&result.slope, slope_factor}, &net);
   capillary.measure(velocity, 0, &sums);
   EXPECT_EQ(reduce_parts(PETSC_COMM_SELF, sums, result.sum), 0);
-  EXPECT_EQ(net.find_mean(&result.mean_force), 0);
+  EXPECT_EQ(net.compute_mean(&result.mean_force), 0);
   const auto is_held = [&](int i, int j, int k) {
     for (const Segment &s : capillary.faces().row(j, k))
       if (i >= s.i_begin && i < s.i_end) return true;
@@ -260,7 +260,7 @@ TEST(SurfaceTension, AddsTheForcesOfItsPhases) {
   ASSERT_EQ(flow.work.reserve(SurfaceTension::fields), 0);
   flow.now.velocity = std::move(grid.velocity);
   SurfaceTension tension(&flow);
-  const FlowLook look{grid.phases, {}};
+  const SynchronisedBodies look{grid.phases, {}};
   SurfaceEnergy seen;
   ASSERT_EQ(tension.add_surface_energy(look, &seen, nullptr), 0);
   EXPECT_EQ(seen.energy, sigma * one.sum[CapillaryForce::area]);

@@ -1,5 +1,5 @@
 // Boundaries that fluid crosses: mirrored and rotated scenes, exact flows, and a vortex that leaves.
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "grid/domain.hpp"
 #include "support/scene.hpp"
 
@@ -10,7 +10,7 @@ using namespace eulastic::test;
 
 namespace {
 
-using Kinds = std::array<std::array<SideKind, 2>, 3>;
+using Kinds = std::array<std::array<BoundaryKind, 2>, 3>;
 
 struct Setting {
   Int3 cells{18, 16, 14};
@@ -24,9 +24,9 @@ struct Setting {
 
   // Inflow along y, outflow along y and x, beside a wall and planes of symmetry.
   Setting() {
-    kind[0] = {SideKind::symmetry, SideKind::pressure};
-    kind[1] = {SideKind::inflow, SideKind::outflow};
-    kind[2] = {SideKind::wall, SideKind::symmetry};
+    kind[0] = {BoundaryKind::symmetry, BoundaryKind::pressure};
+    kind[1] = {BoundaryKind::inflow, BoundaryKind::outflow};
+    kind[2] = {BoundaryKind::wall, BoundaryKind::symmetry};
   }
 };
 
@@ -55,11 +55,11 @@ void create(const Setting &s, Scene &scene) {
   for (int d = 0; d < (s.cells[2] == 1 ? 2 : 3); ++d) {
     grid.boundary[d] = Boundary::wall;
     for (int high = 0; high < 2; ++high) {
-      Side &side = spec.sides[d][high];
+      BoundaryCondition &side = spec.sides[d][high];
       side.kind = s.kind[d][high];
       grid.open[d][high] = is_open(side.kind);
-      if (side.kind == SideKind::inflow) side.given = {s.inflow, s.frequency, 0.1, {}};
-      if (side.kind == SideKind::pressure) side.given = {s.pressure, s.frequency, 0.2, {}};
+      if (side.kind == BoundaryKind::inflow) side.given = {s.inflow, s.frequency, 0.1, {}};
+      if (side.kind == BoundaryKind::pressure) side.given = {s.pressure, s.frequency, 0.2, {}};
     }
   }
   ASSERT_EQ(scene.create(PETSC_COMM_SELF, grid, spec), 0);
@@ -183,8 +183,8 @@ TEST(OpenSides, AllPressureSolversAgreeAndVolumeBalances) {
 TEST(OpenSides, PlugFlowFollowsTheInflow) {
   Setting setting = flat(Setting());
   setting.kind = {};
-  setting.kind[0] = {SideKind::inflow, SideKind::pressure};
-  setting.kind[1] = {SideKind::symmetry, SideKind::symmetry};
+  setting.kind[0] = {BoundaryKind::inflow, BoundaryKind::pressure};
+  setting.kind[1] = {BoundaryKind::symmetry, BoundaryKind::symmetry};
   setting.pressure = 0;
   setting.force = {};
   setting.solver = PressureKind::smac;
@@ -216,7 +216,7 @@ TEST(OpenSides, PlaneFlowStartsBetweenTwoPressures) {
         setting.cells = {n, n, 1};
         setting.length = {1, 1, 1};
         setting.kind = {};
-        setting.kind[along] = {SideKind::outflow, SideKind::pressure};
+        setting.kind[along] = {BoundaryKind::outflow, BoundaryKind::pressure};
         setting.pressure = 2;
         setting.frequency = 0;
         setting.viscosity = 0.2;
@@ -256,18 +256,18 @@ TEST(OpenSides, ASpreadingJetIsOfSecondOrder) {
     setting.cells = {n, n, 1};
     setting.length = {1, 1, 1};
     setting.kind = {};
-    setting.kind[0] = {SideKind::symmetry, SideKind::symmetry};
-    setting.kind[1] = {SideKind::inflow, SideKind::pressure};
+    setting.kind[0] = {BoundaryKind::symmetry, BoundaryKind::symmetry};
+    setting.kind[1] = {BoundaryKind::inflow, BoundaryKind::pressure};
     setting.frequency = 0;
     setting.viscosity = 0.05;
     setting.force = {};
     setting.solver = PressureKind::smac;
     Scene made;
     create(setting, made);
-    SideProfile profile;
+    InflowProfile profile;
     for (int i = 0; i < n; ++i) profile.push_back(1 + 0.5 * std::cos(M_PI * (i + 0.5) / n));
     SolverSpec spec = made.solver.spec();
-    spec.sides[1][0].profile = std::make_shared<const SideProfile>(profile);
+    spec.sides[1][0].profile = std::make_shared<const InflowProfile>(profile);
     Scene jet;
     ASSERT_EQ(jet.create(PETSC_COMM_SELF, made.domain.spec(), spec), 0);
     ASSERT_EQ(jet.solver.prepare(), 0);
@@ -288,13 +288,13 @@ TEST(OpenSides, ASpreadingJetIsOfSecondOrder) {
 
 // A vortex in a stream, strong enough to cause backflow through the boundary where it leaves.
 TEST(OpenSides, AVortexLeavesAndNothingGrows) {
-  for (const SideKind kind : {SideKind::outflow, SideKind::pressure}) {
+  for (const BoundaryKind kind : {BoundaryKind::outflow, BoundaryKind::pressure}) {
     Setting setting;
     setting.cells = {64, 32, 1};
     setting.length = {2, 1, 1};
     setting.kind = {};
-    setting.kind[0] = {SideKind::inflow, kind};
-    setting.kind[1] = {SideKind::symmetry, SideKind::symmetry};
+    setting.kind[0] = {BoundaryKind::inflow, kind};
+    setting.kind[1] = {BoundaryKind::symmetry, BoundaryKind::symmetry};
     setting.frequency = setting.pressure = 0;
     setting.viscosity = 1e-3;
     setting.force = {};

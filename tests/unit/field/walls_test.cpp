@@ -1,5 +1,5 @@
 // Ghosts behind walls: every boundary combination, every staggering, edges and corners, moving walls.
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 #include "field/carried_tensor.hpp"
 #include "field/ghost_exchange.hpp"
@@ -89,7 +89,7 @@ double unfolded(const Domain &domain, Int3 p, const Staggering &staggering, doub
 }
 
 TEST(WallGhosts, VelocityIsOddAboutTheMovingWallAndStopsAtTheFace) {
-  BoxSides walls{};
+  BoundaryConditions walls{};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) walls[d][side].motion = {{.1 + d, .2 - side, .3 * d}, 1.5 + d, .4 * side};
   const double time = .7;
@@ -148,7 +148,7 @@ TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
     Field tensor(domain, static_cast<int>(components.size()));
     prepare(
         domain, tensor, [&](int f) { return components[f].at; }, 3);
-    fill_wall_ghosts_tensor(domain, BoxSides{}, tensor, 3);
+    fill_wall_ghosts_tensor(domain, BoundaryConditions{}, tensor, 3);
     int wrong = 0;
     for (int f = 0; f < tensor.count(); ++f)
       for_each_point(domain, components[f].at, 3, [&](const Int3 &p) {
@@ -166,8 +166,8 @@ TEST(WallGhosts, EachTensorComponentReflectsWhereItLives) {
 TEST(SymmetryGhosts, AreTheMirrorImage) {
   Domain domain;
   ASSERT_EQ(domain.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
-  BoxSides sides{};
-  sides[1][1].kind = SideKind::symmetry;
+  BoundaryConditions sides{};
+  sides[1][1].kind = BoundaryKind::symmetry;
   Field velocity(domain, 2), tensor(domain, 3);
   for (int j = 0; j < 5; ++j)
     for (int i = 0; i < 3; ++i) {
@@ -214,7 +214,7 @@ TEST(WallGhosts, TensorComponentsAreInTheirOrder) {
 TEST(WallGhosts, CouetteStaysLinearThroughTheWalls) {
   Domain domain;
   ASSERT_EQ(domain.create(PETSC_COMM_SELF, box({3, 4, 1}, 2)), 0);
-  BoxSides walls{};
+  BoundaryConditions walls{};
   walls[1][0].motion.velocity = {-1, 9, 0};  // the normal component is ignored
   walls[1][1].motion.velocity = {3, 9, 0};
   Field velocity(domain, 2);
@@ -246,7 +246,7 @@ TEST(WallGhosts, RotatedScenesHaveRotatedGhosts) {
     Domain domain, turned;
     ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(cells, 7)), 0);
     ASSERT_EQ(turned.create(PETSC_COMM_SELF, box(turned_cells, 7)), 0);
-    BoxSides walls{}, turned_walls{};
+    BoundaryConditions walls{}, turned_walls{};
     for (int d = 0; d < dimension; ++d)
       for (int side = 0; side < 2; ++side) {
         WallMotion motion{{.7 + d, 1.1 - d + side, dimension == 3 ? 1.9 + side : 0}, .3, .1 * d};
@@ -286,7 +286,7 @@ TEST(WallGhosts, OfTheTensorOnlyWhereABodyIsNear) {
     for (const Segment &s : domain.rows())
       for (int f = 0; f < 6; ++f)
         for (int i = 0; i < s.i_end; ++i) tensor[f](i, s.j, s.k) = 1 + f;
-    fill_wall_ghosts_tensor(domain, BoxSides{}, tensor, 3, &rows);
+    fill_wall_ghosts_tensor(domain, BoundaryConditions{}, tensor, 3, &rows);
     const auto ghost = [&](int f, Int3 at, int index) {
       at[d] = index;
       return tensor[f](at[0], at[1], at[2]);

@@ -14,7 +14,7 @@ constexpr double pi = 3.14159265358979323846;
 struct Flow {
   Domain domain;
   Field velocity;
-  Flow(const GridSpec &spec, const InitialFlow &flow, const BoxSides &walls = {}) {
+  Flow(const GridSpec &spec, const InitialFlow &flow, const BoundaryConditions &walls = {}) {
     EXPECT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
     velocity = Field(domain, domain.dimension());
     set_initial_velocity(domain, walls, flow, velocity);
@@ -82,7 +82,7 @@ TEST(InitialVelocity, ShearLayer) {
 
 TEST(InitialVelocity, Channel) {
   const GridSpec channel = box({4, 5, 3}, {1, 2, 1}, {Boundary::periodic, Boundary::wall, Boundary::periodic});
-  BoxSides walls{};
+  BoundaryConditions walls{};
   walls[1][0].motion.velocity = {-1, 0, 2};
   walls[1][1].motion.velocity = {3, 0, 4};
   const Flow couette(channel, {InitialVelocity::couette, 9, {}}, walls);

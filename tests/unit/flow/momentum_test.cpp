@@ -46,7 +46,8 @@ TEST(CarryVelocity, IsTheMeanOfTheNearestFaces) {
         const Staggering at{(set & 1) != 0, (set & 2) != 0, (set & 4) != 0};
         std::vector<double> out(domain.cells()[0], 99);
         for (const Segment &row : domain.rows()) {
-          kernels::carry_velocity(Segment{2, row.i_end - 1, row.j, row.k}, velocity[d], d, at.data(), dim, out.data());
+          kernels::average_velocity(Segment{2, row.i_end - 1, row.j, row.k}, velocity[d], d, at.data(), dim,
+                                    out.data());
           for (int i = 2; i < row.i_end - 1; ++i)
             EXPECT_NEAR(out[i], mean_of_near_faces(domain, velocity[d], d, at, {i, row.j, row.k}), 1e-15)
                 << "xyz"[d] << " at " << set;

@@ -24,7 +24,7 @@ struct BoundaryCase {
 struct RandomFlow {
   Domain domain;
   std::unique_ptr<GhostExchange> exchange;
-  BoxSides walls{};
+  BoundaryConditions walls{};
   Field velocity, pressure;
 
   explicit RandomFlow(const BoundaryCase &sides) {

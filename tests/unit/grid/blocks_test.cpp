@@ -28,7 +28,7 @@ public:
         EXPECT_EQ(row.size(), domain_.cells()[0]);  // x is periodic
         for (; row.j < j_end; ++row.j) do_row(s, row.j, row.k);
       };
-      domain_.dimension() == 2 ? pass.go<2>(task, rows) : pass.go<3>(task, rows);
+      domain_.dimension() == 2 ? pass.for_rows<2>(task, rows) : pass.for_rows<3>(task, rows);
     });
   }
 
@@ -69,7 +69,7 @@ private:
   }
 
   const Domain &domain_;
-  Sides sides_;
+  HaloOverlap sides_;
   int depth_, layers_, width_ = 0;
   std::vector<int> stage_[2];
   std::atomic<long> rows_{0};

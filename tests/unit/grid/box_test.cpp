@@ -29,8 +29,8 @@ TEST(Box, InTheMiddleOfTheDomainTouchesNothing) {
     EXPECT_FALSE(box.spans(d));
     for (const bool high : {false, true}) {
       EXPECT_FALSE(box.touches(d, high));
-      EXPECT_TRUE(box.faces_on(d, high).empty());
-      EXPECT_TRUE(box.cells_at(d, high, 2).empty());
+      EXPECT_TRUE(box.boundary_faces(d, high).empty());
+      EXPECT_TRUE(box.boundary_cells(d, high, 2).empty());
     }
     EXPECT_EQ(box.points_end(d, true), box.cells()[d]);
     EXPECT_EQ(box.points_end(d, true), box.cells()[d]);
@@ -43,7 +43,7 @@ TEST(Box, GhostsEndBehindSidesOfTheDomainOnly) {
   // begins across the periodic boundary, ends at the high wall in y
   const Box box(shape(), {-3, 2, 14}, {6, 28, 4}, 5);
   const auto near = [&](int d, bool staggered, int layers) {
-    const Box::Range range = box.points_near(d, staggered, layers);
+    const Box::Range range = box.points_with_ghosts(d, staggered, layers);
     return std::array<int, 2>{range.begin, range.end};
   };
   EXPECT_EQ(near(0, true, 5), (std::array<int, 2>{-5, 11}));
@@ -70,7 +70,7 @@ TEST(Box, FacesAndCellsOnTheSidesThatItTouches) {
   }
   EXPECT_TRUE(box.open_high_faces(1).empty());  // a wall is not open
   int points = 0;
-  for_points(box.cells_at(1, true, 2), [&](int, int j, int) {
+  for_points(box.boundary_cells(1, true, 2), [&](int, int j, int) {
     EXPECT_GE(j, 28);
     ++points;
   });

@@ -75,7 +75,7 @@ TEST(GridDecomposition, AnswersExactlyWhenThereIsAnAnswer) {
             possible |= px <= cells[0] / 3 && py <= cells[1] / 3 && (cells[2] == 1 ? pz == 1 : pz <= cells[2] / 3);
           }
       EXPECT_EQ(best[0] > 0, possible) << cells[0] << " cells in x, " << ranks << " ranks";
-      EXPECT_EQ(Domain::why_not(spec, ranks).empty(), possible);
+      EXPECT_EQ(Domain::refusal_reason(spec, ranks).empty(), possible);
       if (best[0] == 0) continue;
       EXPECT_EQ(best[0] * best[1] * best[2], ranks);
       for (int d = 0; d < 3; ++d) EXPECT_GE(cells[d] / best[d], d == 2 && cells[2] == 1 ? 1 : 3);
@@ -83,16 +83,16 @@ TEST(GridDecomposition, AnswersExactlyWhenThereIsAnAnswer) {
 }
 
 TEST(GridDecomposition, SaysWhyNot) {
-  EXPECT_EQ(Domain::why_not(box({64, 64, 64}), 4), "");
+  EXPECT_EQ(Domain::refusal_reason(box({64, 64, 64}), 4), "");
   const std::string few = "; accepted: at least 3 in x and y, 1 (2-D) or at least 3 in z";
-  EXPECT_EQ(Domain::why_not(box({8, 2, 8}), 1), "-grid_cells: 2 in y" + few);
-  EXPECT_EQ(Domain::why_not(box({8, 8, 2}), 1), "-grid_cells: 2 in z" + few);
-  EXPECT_EQ(Domain::why_not(box({0, 8, 1}), 1), "-grid_cells: 0 in x" + few);
+  EXPECT_EQ(Domain::refusal_reason(box({8, 2, 8}), 1), "-grid_cells: 2 in y" + few);
+  EXPECT_EQ(Domain::refusal_reason(box({8, 8, 2}), 1), "-grid_cells: 2 in z" + few);
+  EXPECT_EQ(Domain::refusal_reason(box({0, 8, 1}), 1), "-grid_cells: 0 in x" + few);
   EXPECT_EQ(
-      Domain::why_not(box({5, 5, 5}), 2),
+      Domain::refusal_reason(box({5, 5, 5}), 2),
       "-grid_cells: 2 ranks cannot share 5 x 5 x 5 cells; accepted: at least 3 cells per rank in every direction");
   EXPECT_EQ(
-      Domain::why_not(box({64, 64, 64}, {2, 2, 0}), 3),
+      Domain::refusal_reason(box({64, 64, 64}, {2, 2, 0}), 3),
       "-da_processors_x, _y, _z: 3 ranks cannot share 64 x 64 x 64 cells as 2 x 2 x 0 ranks (0 = free); accepted: "
       "a product of 3, and at least 3 cells per rank in every direction");
 }

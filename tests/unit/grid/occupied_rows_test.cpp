@@ -20,7 +20,7 @@ struct Scene {
     value = Field(domain, 1);
     reach = domain.layout().ghosts[0] + 2;
   }
-  PetscErrorCode follow() { return OccupiedRows::follow(domain, {{&rows, std::as_const(value)[0]}}); }
+  PetscErrorCode follow() { return OccupiedRows::update(domain, {{&rows, std::as_const(value)[0]}}); }
   // Checks the span that span() documents for a single nonzero cell.
   void expect(const Int3 &cell) const {
     const bool flat = domain.dimension() == 2;

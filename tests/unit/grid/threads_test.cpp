@@ -113,10 +113,10 @@ TEST_F(Threads, ATeamDoesEveryTaskWhole) {
   std::atomic<int> members{0};
   const Domain domain = make_grid({32, 32, 32});
   EXPECT_GT(row_parts(domain), 1);
-  const double flops = in_team(50, [&](int n) {
+  const double flops = in_parallel_tasks(50, [&](int n) {
     ++done[n];
     members |= 1 << TeamMember::number();
-    VerbScope(Verb::bodies).flops(n);
+    EventScope(Event::bodies).flops(n);
     EXPECT_EQ(row_parts(domain), 1);
     in_parallel(3, 3, [&](int) { EXPECT_TRUE(TeamMember::is_here()); });
   });

@@ -27,7 +27,7 @@ TEST(SurfaceFit, FindsAQuadraticAndWhatIsNot) {
       }
     }
     points.count = 21;
-    points.fill_up();
+    points.pad_to_lanes();
     EXPECT_EQ(points.count, 24);
     SurfaceFit<3, 4> fit;
     ASSERT_TRUE((fit_surface<3, 4>(points, &fit)));
@@ -61,7 +61,7 @@ TEST(SurfaceFit, InTwoDimensionsFitsAParabola) {
     points.value[1][n] = u;
   }
   points.count = 9;
-  points.fill_up();
+  points.pad_to_lanes();
   SurfaceFit<2, 2> fit;
   ASSERT_TRUE((fit_surface<2, 2>(points, &fit)));
   EXPECT_NEAR(fit.coefficient[0][0], 2, 1e-13);

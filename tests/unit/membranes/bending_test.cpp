@@ -80,7 +80,7 @@ Seen bend(double a, double b, double c0, int dim, int cells) {
   std::vector<Phase> phases(1);
   Phase &phase = phases[0];
   phase.fraction = std::move(scene.fraction);
-  phase.tensor.field = tensor_at_rest(scene.domain);
+  phase.tensor.field = undeformed_tensor(scene.domain);
   phase.material.law = Law::membrane;
   phase.material.membrane.bending_modulus = 1;
   phase.material.membrane.spontaneous_curvature = c0;

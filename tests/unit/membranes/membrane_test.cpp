@@ -67,11 +67,11 @@ TEST(Membrane, AreaIsKeptAboveABoundByBringingStretchesTogether) {
   };
   kernels::Tensor<3> fine = principal(4, 0.0626);
   const kernels::Tensor<3> same = fine;
-  EXPECT_FALSE(kernels::keep_area<3>(normal, least, &fine));
+  EXPECT_FALSE(kernels::bound_area<3>(normal, least, &fine));
   EXPECT_EQ(fine, same);
   for (const auto &[one, two] : {std::pair{4.0, 0.05}, {2.0, -1.0}, {0.9, 0.2}, {0.1, 0.1}, {-3.0, 1.0}, {0.0, 0.0}}) {
     kernels::Tensor<3> B = principal(one, two);
-    EXPECT_TRUE(kernels::keep_area<3>(normal, least, &B));
+    EXPECT_TRUE(kernels::bound_area<3>(normal, least, &B));
     const double mean = std::max(0.5 * (one + two), std::sqrt(least));
     const double apart = std::copysign(std::sqrt(mean * mean - least), one - two);
     const kernels::Tensor<3> expected = principal(mean + apart, mean - apart);
@@ -79,7 +79,7 @@ TEST(Membrane, AreaIsKeptAboveABoundByBringingStretchesTogether) {
       for (int y = 0; y < 3; ++y) EXPECT_NEAR(B[x][y], expected[x][y], 1e-14) << one << " " << two;
   }
   kernels::Tensor<3> none = principal(std::nan(""), 1);
-  EXPECT_FALSE(kernels::keep_area<3>(normal, least, &none));
+  EXPECT_FALSE(kernels::bound_area<3>(normal, least, &none));
 }
 
 // F P_0 F^T, where n_0 is the normal that F turns into n.
@@ -97,10 +97,10 @@ TEST(Membrane, TakesItsPartOfTheStretchOfABody) {
         for (int d = 0; d < 3; ++d)
           expected[a][b] += F[a][c] * ((c == d) - before[c] * before[d] / (size * size)) * F[b][d];
       }
-  const kernels::Tensor<3> found = kernels::surface_part<3>(B, normal);
+  const kernels::Tensor<3> found = kernels::surface_tensor<3>(B, normal);
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) EXPECT_NEAR(found[a][b], expected[a][b], 1e-14);
-  const kernels::Tensor<3> one{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, rest = kernels::surface_part<3>(one, normal);
+  const kernels::Tensor<3> one{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, rest = kernels::surface_tensor<3>(one, normal);
   EXPECT_EQ(rest, kernels::tangential<3>(normal));
 }
 
@@ -130,7 +130,7 @@ kernels::Tensor<3> turned(const kernels::Tensor<3> &B, const kernels::Vector<3> 
     normals[x][1] = from[x];
     for (int y = 0; y < 3; ++y) fields[kernels::position<3>(x, y)][1] = B[x][y];
   }
-  kernels::turn<3>(n, 2, share, normals, fields);
+  kernels::rotate_tensors<3>(n, 2, share, normals, fields);
   kernels::Tensor<3> out;
   for (int x = 0; x < 3; ++x)
     for (int y = 0; y < 3; ++y) out[x][y] = fields[kernels::position<3>(x, y)][1];
@@ -171,7 +171,7 @@ struct Ball : InterfaceScene {
     set_fraction(ball(centre, radius, dim));
     exchange = std::make_unique<GhostExchange>(domain);
     phases[0].fraction = std::move(fraction);
-    phases[0].tensor.field = tensor_at_rest(domain);
+    phases[0].tensor.field = undeformed_tensor(domain);
     EXPECT_EQ(exchange->update_ghosts(phases[0].fraction, 5), 0);
     EXPECT_EQ(phases[0].rows.find(domain, phases[0].fraction[0]), 0);
     smooth = Field(domain, SurfaceCells::work_fields);
@@ -186,7 +186,7 @@ struct Ball : InterfaceScene {
 TEST(SurfaceCells, KnowNormalDistanceAndArea) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
-    const BoxSides sides{};
+    const BoundaryConditions sides{};
     SurfaceCells cells({&ball.domain, &sides, ball.exchange.get()});
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
     const double h = 1. / Ball::cells;
@@ -213,7 +213,7 @@ TEST(SurfaceCells, KnowNormalDistanceAndArea) {
 TEST(SurfaceCells, ExtendWhatIsIsotropic) {
   for (const int dim : {2, 3}) {
     Ball ball(dim);
-    const BoxSides sides{};
+    const BoundaryConditions sides{};
     SurfaceCells cells({&ball.domain, &sides, ball.exchange.get()});
     ASSERT_EQ(cells.find(ball.phases[0], ball.smooth), 0);
     Field tensor(ball.domain, dim == 2 ? 3 : 6);
@@ -253,7 +253,7 @@ TEST(Membrane, AtRestHasNoForceAndStretchedThatOfLaplace) {
     phase.material.membrane.shear_modulus = 2;
     for (const double stretch : {1.0, 1.2}) {
       phase.material.membrane.initial_area_stretch = stretch;
-      phase.tensor.field = tensor_at_rest(ball.domain);
+      phase.tensor.field = undeformed_tensor(ball.domain);
       ASSERT_EQ(membrane.start(), 0);
       SurfaceEnergy seen;
       ASSERT_EQ(membrane.add_surface_energy({flow.now.phases, {}}, &seen, nullptr), 0);
@@ -299,7 +299,7 @@ TEST(Membrane, BelievesMarkersThatTellOfALikelyStrain) {
     Phase &phase = flow.now.phases[0];
     phase.material.law = Law::membrane;
     phase.material.membrane.shear_modulus = 2;
-    phase.tensor.field = tensor_at_rest(ball.domain);
+    phase.tensor.field = undeformed_tensor(ball.domain);
     ASSERT_EQ(membrane.start(), 0);
     std::vector<SurfaceMarker> &markers = flow.now.markers;
     ASSERT_GT(markers.size(), 50u);

@@ -20,7 +20,7 @@ struct MarkedBall : InterfaceScene {
   const Real3 centre{0.05, 0.49, 0.505};
   Phase phase;
   std::unique_ptr<GhostExchange> exchange;
-  BoxSides sides;
+  BoundaryConditions sides;
   std::unique_ptr<SurfaceCells> surface;
   std::unique_ptr<SurfaceMarkers> markers;
   Field smooth;
@@ -41,7 +41,7 @@ struct MarkedBall : InterfaceScene {
     EXPECT_EQ(exchange->update_ghosts(phase.fraction, 5), 0);
     EXPECT_EQ(phase.rows.find(domain, phase.fraction[0]), 0);
     smooth = Field(domain, SurfaceCells::work_fields);
-    surface = std::make_unique<SurfaceCells>(PhasePlace{&domain, &sides, exchange.get()});
+    surface = std::make_unique<SurfaceCells>(PhaseDomain{&domain, &sides, exchange.get()});
     EXPECT_EQ(surface->find(phase, smooth), 0);
     markers = std::make_unique<SurfaceMarkers>(domain);
   }
@@ -91,7 +91,7 @@ void tells_the_strain(double stretch) {
       for (int k = 0; k < Dim; ++k) B[x][y] += stretch * F[x][k] * F[y][k];
   for (const SurfaceMarkers::Strain &strain : strains) {
     const SurfaceCells::Cell &cell = ball.surface->all()[strain.cell];
-    const kernels::Tensor<Dim> expected = kernels::surface_part<Dim>(B, normal_of<Dim>(cell.normal));
+    const kernels::Tensor<Dim> expected = kernels::surface_tensor<Dim>(B, normal_of<Dim>(cell.normal));
     for (int x = 0; x < Dim; ++x)
       for (int y = x; y < Dim; ++y) EXPECT_NEAR(strain.B[kernels::position<Dim>(x, y)], expected[x][y], 0.01 * stretch);
   }
@@ -170,7 +170,7 @@ TEST(SurfaceMarkers, ComeBackToTheSurfaceAndAreTakenOutFarFromIt) {
   for (int d = 0; d < 3; ++d) ball.all[0].offset[d] += 0.3 * ball.all[0].normal[d];
   const double away = std::fabs(radius_of(ball.all[0]) - ball.radius);
   ball.all[1].cell = {12, 12, 12};  // opposite to the ball, whose centre is near x = 0
-  ball.markers->settle(*ball.surface, ball.smooth, 0, &ball.all);
+  ball.markers->pull_to_surface(*ball.surface, ball.smooth, 0, &ball.all);
   EXPECT_EQ(ball.all.size(), count - 1);
   EXPECT_NEAR(std::fabs(radius_of(ball.all[0]) - ball.radius), 0.8 * away, 0.05 * away);
 }

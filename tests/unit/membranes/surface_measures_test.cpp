@@ -28,7 +28,7 @@ SurfaceMeasure measure(int dim, const Flow &flow, SurfaceEnergy *energy) {
   std::vector<Phase> phases(1);
   Phase &phase = phases[0];
   phase.fraction = std::move(scene.fraction);
-  phase.tensor.field = tensor_at_rest(scene.domain);
+  phase.tensor.field = undeformed_tensor(scene.domain);
   phase.label = Field(scene.domain, 1);
   phase.material.law = Law::membrane;
   phase.material.membrane.shear_modulus = 2;

@@ -19,7 +19,7 @@ struct Film {
   WallFilm film;
 
   // A floor below row `bottom`: a boundary of the box, or a rigid body in a periodic box.
-  explicit Film(int bottom, SideKind side = SideKind::wall) {
+  explicit Film(int bottom, BoundaryKind side = BoundaryKind::wall) {
     GridSpec spec;
     spec.cells = {cells_x, cells_y, 1};
     spec.length = {cells_x * h, cells_y * h, h};
@@ -31,7 +31,7 @@ struct Film {
     floor.fraction = Field(domain, 1);
     scratch = Field(domain, WallFilm::work_fields);
     force = Field(domain, 2);
-    BoxSides sides;
+    BoundaryConditions sides;
     for (auto &one : sides[1]) one.kind = side;
     for (int j = 0; j < bottom; ++j) std::fill_n(floor.fraction[0].row(j, 0), cells_x, 1.0);
     const ConstView floor_fraction = std::as_const(floor).fraction[0];
@@ -96,7 +96,7 @@ TEST(WallFilm, StoresWhatTheFlowGivesToIt) {
 }
 
 TEST(WallFilm, IsNotAtPlanesOfSymmetryAndOpenSides) {
-  for (const SideKind side : {SideKind::symmetry, SideKind::pressure, SideKind::outflow}) {
+  for (const BoundaryKind side : {BoundaryKind::symmetry, BoundaryKind::pressure, BoundaryKind::outflow}) {
     Film scene(0, side);
     scene.fill(0, [](int) { return 0.4; });
     scene.film.add_force(scene.phase, scene.force);

@@ -20,12 +20,12 @@ TEST(Options, SidesAreThoseOfTheDirectionUnlessToldOtherwise) {
   const Config &c = result.config;
   EXPECT_EQ(c.grid.boundary, (std::array<Boundary, 3>{Boundary::periodic, Boundary::wall, Boundary::wall}));
   for (const int d : {1, 2}) {
-    EXPECT_EQ(c.sides[d][0].kind, SideKind::wall);
-    EXPECT_EQ(c.sides[d][1].kind, SideKind::symmetry);
+    EXPECT_EQ(c.sides[d][0].kind, BoundaryKind::wall);
+    EXPECT_EQ(c.sides[d][1].kind, BoundaryKind::symmetry);
   }
   const Config both = parse_line("-time_end 1 -grid_cells 8,8,8 -boundary_x symmetry").config;
   EXPECT_EQ(both.grid.boundary[0], Boundary::wall);
-  for (const Side &side : both.sides[0]) EXPECT_EQ(side.kind, SideKind::symmetry);
+  for (const BoundaryCondition &side : both.sides[0]) EXPECT_EQ(side.kind, BoundaryKind::symmetry);
 }
 
 TEST(Options, ValuesArrive) {

@@ -91,7 +91,7 @@ TEST_F(GuardsTest, BeforeAStep) {
   ASSERT_EQ(guards.before_step(scene.solver, extremes, 1e-17, &stop), 0);
   EXPECT_NE(stop.message.find("too short to change the time"), std::string::npos) << stop.message;
   stop = {};
-  extremes.first_bad = 8 + 1;
+  extremes.first_non_finite = 8 + 1;
   ASSERT_EQ(guards.before_step(scene.solver, extremes, 0.19, &stop), 0);
   EXPECT_EQ(stop.reason, "nonfinite");
   EXPECT_NE(stop.message.find("x, y, z = 1.5, 0.75, 0.5: a field is not finite"), std::string::npos) << stop.message;

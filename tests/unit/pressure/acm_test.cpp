@@ -156,7 +156,7 @@ TEST_P(AcmStep, ReachesThePredictedResidual) {
   Domain domain;
   ASSERT_EQ(domain.create(PETSC_COMM_SELF, spec), 0);
   GhostExchange exchange(domain);
-  const BoxSides walls{};
+  const BoundaryConditions walls{};
   Random random(3);
   const double dt = 0.02, density = 1.7;
   Field velocity(domain, domain.dimension()), D(domain, 1), p(domain, 1), none;

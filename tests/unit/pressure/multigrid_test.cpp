@@ -1,6 +1,6 @@
 // The V-cycle: its transfers, its linearity, a number of iterations that does not grow with the grid, and the least
 // squares.
-#include "pressure/acm_sweeps.hpp"
+#include "pressure/acm_iterations.hpp"
 #include "support/poisson_scene.hpp"
 
 #include <cstdio>
@@ -37,7 +37,7 @@ Convergence convergence(const GridSpec &spec) {
   for (const double target : {1e-4, 1e-8, 1.0}) {
     PoissonScene s(PETSC_COMM_SELF, spec);
     s.set(f);
-    AcmSweepSolver solver;
+    AcmIterativeSolver solver;
     WorkSpace work(s.domain);
     EXPECT_EQ(solver.create(s.domain, *s.exchange, {30, 0, true}, work), 0);
     solver.set_target(target * s.rms_divergence());

@@ -88,9 +88,9 @@ TEST(Cuts, AreTheGridsWhereTheyAreGiven) {
   const Layout last = domain.split().box_of(3, spec, 0).layout();
   EXPECT_EQ(last.begin, (Int3{0, 3, 9}));
   EXPECT_EQ(last.cells, (Int3{8, 13, 3}));
-  EXPECT_NE(Domain::why_not(spec, 2), "");
+  EXPECT_NE(Domain::refusal_reason(spec, 2), "");
   spec.starts[2] = {0, 10, 12};  // two cells
-  EXPECT_NE(Domain::why_not(spec, 4), "");
+  EXPECT_NE(Domain::refusal_reason(spec, 4), "");
 }
 
 }  // namespace

@@ -76,5 +76,6 @@ TEST(Memory, PhasesAndBoxesCount) {
   // Viscosities of the place, at centres, on edges and along surfaces, three of the normal, six of the stress there,
   // and the pressure of the step before; five velocities, two fields of the V-cycles and their coarse levels.
   const Config viscous = parse_line(line + "-ball_contact merge -ball_viscosity 2 -fluid_viscosity 1").config;
-  EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}), bytes_per_rank(merged, {1, 1, 1}) + 8 * (15 + 17.4) * std::pow(42, 3));
+  EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}),
+                   bytes_per_rank(merged, {1, 1, 1}) + 8 * (15 + 17.4) * std::pow(42, 3));
 }

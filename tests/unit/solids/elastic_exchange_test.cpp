@@ -73,7 +73,7 @@ Exchange exchange_of(bool flat, const Material &material, bool uniform, double c
       for (int i = 0; i < s.i_end; ++i)
         e.force += solid.velocity[a](i, s.j, s.k) * force[a](i, s.j, s.k) * domain.cell_volume();
   EnergyRates rates;
-  EnergyNumbers numbers;
+  EnergyParameters numbers;
   EXPECT_EQ(measure_energy_rates(domain, solid.velocity, solid.phases, numbers, &rates), 0);
   e.stress = rates.elastic_power;
   with_viscosity(phase.tensor.rule, [&](const auto &viscosity) {

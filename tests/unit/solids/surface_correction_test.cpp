@@ -186,7 +186,7 @@ struct Wall {
     EXPECT_EQ(surface.apply(domain, {dt, fluid, sides}, velocity, phase, work), 0);
   }
   SurfaceCorrection surface;
-  BoxSides sides{};
+  BoundaryConditions sides{};
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ struct Setting {
   Real3 length{9, 8, 7};
   std::array<Boundary, 3> boundary{Boundary::periodic, Boundary::wall, Boundary::periodic};
   std::array<std::array<Real3, 2>, 3> wall_velocity{};
-  std::array<std::array<SideKind, 2>, 3> side{};
+  std::array<std::array<BoundaryKind, 2>, 3> side{};
   Real3 force{0.4, 0.2, -0.3};
   Real3 centre{4.1, 3.3, 3.9};
   Real3 axes{2.2, 1.7, 1.9};
@@ -229,7 +229,7 @@ TEST(MirroredScene, GivesTheMirroredResultWithFast) {
 
 // The lower half of a scene that is its own mirror image along d, which is either periodic or between walls.
 Setting half(Setting s, int d) {
-  s.side[d] = {s.boundary[d] == Boundary::wall ? SideKind::wall : SideKind::symmetry, SideKind::symmetry};
+  s.side[d] = {s.boundary[d] == Boundary::wall ? BoundaryKind::wall : BoundaryKind::symmetry, BoundaryKind::symmetry};
   s.boundary[d] = Boundary::wall;
   s.cells[d] /= 2;
   s.length[d] /= 2;

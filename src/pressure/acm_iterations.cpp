@@ -1,15 +1,15 @@
-#include "pressure/acm_sweeps.hpp"
+#include "pressure/acm_iterations.hpp"
 
 #include "base/events.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace eulastic {
 
-PetscErrorCode AcmSweepSolver::create(const Domain &domain, GhostExchange &exchange, const AcmSweepOptions &options,
-                                      WorkSpace &work) {
+PetscErrorCode AcmIterativeSolver::create(const Domain &domain, GhostExchange &exchange,
+                                          const AcmIterativeOptions &options, WorkSpace &work) {
   PetscFunctionBeginUser;
   PetscCheck(options.sweeps_max >= 1 && options.memory >= 0 && options.memory <= LeastSquaresSums::most, domain.comm(),
              PETSC_ERR_ARG_OUTOFRANGE, "sweeps %d, memory %d", options.sweeps_max, options.memory);
@@ -27,12 +27,12 @@ PetscErrorCode AcmSweepSolver::create(const Domain &domain, GhostExchange &excha
   PetscFunctionReturn(0);
 }
 
-std::size_t AcmSweepSolver::bytes() const {
+std::size_t AcmIterativeSolver::bytes() const {
   return memory_.bytes() + own_scratch_.bytes() + (multigrid_ ? multigrid_->bytes() : 0);
 }
 
 /// State of a solve.
-struct AcmSweepSolver::SolveState {
+struct AcmIterativeSolver::SolveState {
   double dt;
   Field &increment;
   ConstView residual, before{};  // D and its value before the last iteration
@@ -42,11 +42,11 @@ struct AcmSweepSolver::SolveState {
   bool done = false;
 };
 
-PetscErrorCode AcmSweepSolver::solve(double dt, const Field &divergence, Field &, Field &increment) {
+PetscErrorCode AcmIterativeSolver::solve(double dt, const Field &divergence, Field &, Field &increment) {
   PetscFunctionBeginUser;
-  VerbScope scope(Verb::acm);
+  EventScope scope(Event::acm);
   WorkSpace::Lease lease;
-  PetscCall(work_->take("pressure sweeps", work_fields, &lease));
+  PetscCall(work_->lease("pressure sweeps", work_fields, &lease));
   residual_ = lease.part(0, 1);
   before_ = lease.part(1, 1);
   direction_ = lease.part(2, 1);
@@ -90,7 +90,7 @@ PetscErrorCode AcmSweepSolver::solve(double dt, const Field &divergence, Field &
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AcmSweepSolver::iterate(bool last, SolveState &state) {
+PetscErrorCode AcmIterativeSolver::iterate(bool last, SolveState &state) {
   PetscFunctionBeginUser;
   const IterationTask task{
       domain_,        directions_.data(), static_cast<int>(directions_.size()), state.with_previous,

@@ -1,11 +1,11 @@
-#include "field/fed_velocity.hpp"
+#include "field/inlet_velocity.hpp"
 
 #include "field/reflection.hpp"
 
 namespace eulastic {
 
-PetscErrorCode FedVelocity::copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
-                                 FedVelocity *fed) {
+PetscErrorCode InletVelocity::copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
+                                   InletVelocity *fed) {
   const int owner = domain.split().position_along(d, index), local = index - domain.layout().begin[d];
   int position;
   PetscFunctionBeginUser;
@@ -16,14 +16,14 @@ PetscErrorCode FedVelocity::copy(const Domain &domain, ConstView component, int 
   PetscFunctionReturn(0);
 }
 
-FedVelocity FedVelocity::of_faces(const Box &box, ConstView component, int d, int local) {
-  FedVelocity fed;
+InletVelocity InletVelocity::of_faces(const Box &box, ConstView component, int d, int local) {
+  InletVelocity fed;
   fed.resize(box, d);
   fed.read(component, local);
   return fed;
 }
 
-void FedVelocity::resize(const Box &box, int d) {
+void InletVelocity::resize(const Box &box, int d) {
   const Plane plane(box.layout(), d);
   d_ = d;
   begin_ = plane.begin;
@@ -33,14 +33,14 @@ void FedVelocity::resize(const Box &box, int d) {
   values_.resize(count);
 }
 
-void FedVelocity::read(ConstView component, int local) {
+void InletVelocity::read(ConstView component, int local) {
   for_each([&](Int3 at, double &value) {
     at[d_] = local;
     value = component(at[0], at[1], at[2]);
   });
 }
 
-void FedVelocity::set_row(const Segment &row, View component) const {
+void InletVelocity::set_row(const Segment &row, View component) const {
   for (int i = row.i_begin; i < row.i_end; ++i) component(i, row.j, row.k) = values_[index_of(i, row.j, row.k)];
 }
 

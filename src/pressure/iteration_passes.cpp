@@ -1,4 +1,4 @@
-#include "pressure/sweep_passes.hpp"
+#include "pressure/iteration_passes.hpp"
 
 #include "grid/blocks.hpp"
 #include "kernels/momentum.hpp"
@@ -85,7 +85,7 @@ EULASTIC_INLINE void update_fields(const UpdateTask &t, const RowPart &part) {
                  two = How == Increment::set_two || How == Increment::add_two;
   const Int3 n = t.domain->cells();
   const InverseSquares h = t.domain->inverse_squares();
-  const Sides sides(*t.domain);
+  const HaloOverlap sides(*t.domain);
   const double shift = t.shift, scale = t.scale;
   const std::ptrdiff_t sy = t.increment.sy, sz = t.increment.sz;
   double c[Stencils + WithPrevious];

@@ -11,15 +11,15 @@
 namespace eulastic {
 
 /// Values of the normal velocity on a plane of faces.
-class FedVelocity {
+class InletVelocity {
 public:
   /// Copies `component`, normal to direction d, on the faces with the global index `index` from the ranks that own them
   /// to all ranks of their line along d, including ghosts of the other directions. Collective over `line`, the
   /// communicator of these ranks, ordered by their position along d.
   static PetscErrorCode copy(const Domain &domain, ConstView component, int d, int index, MPI_Comm line,
-                             FedVelocity *fed);
+                             InletVelocity *fed);
   /// Copies the faces with the local index `local` of a block that contains them, without communication.
-  static FedVelocity of_faces(const Box &box, ConstView component, int d, int local);
+  static InletVelocity of_faces(const Box &box, ConstView component, int d, int local);
   /// Writes the values of a row of the plane to `component`. `row` lies in the plane or in another one along d.
   void set_row(const Segment &row, View component) const;
   /// Calls visit(local face, value) for every value of the plane, including ghosts.

@@ -10,23 +10,24 @@
 #include "field/work_space.hpp"
 #include "grid/domain.hpp"
 #include "pressure/increment_memory.hpp"
+#include "pressure/iteration_passes.hpp"
 #include "pressure/multigrid.hpp"
 #include "pressure/pressure_solver.hpp"
-#include "pressure/sweep_passes.hpp"
 
 namespace eulastic {
 
-struct AcmSweepOptions {
+struct AcmIterativeOptions {
   int sweeps_max = 20;    ///< number of iterations, at least 1; the projection on earlier increments does not count
   int memory = 2;         ///< number of increments of earlier time steps, 0 ... 4
   bool multigrid = true;  ///< else the direction is the divergence itself
 };
 
-class AcmSweepSolver final : public PressureSolver {
+class AcmIterativeSolver final : public PressureSolver {
 public:
   static constexpr int work_fields = 4;  ///< components of the work space during a solve
   /// Creates the solver. `domain`, `exchange` and `work` must outlive it. Collective.
-  PetscErrorCode create(const Domain &domain, GhostExchange &exchange, const AcmSweepOptions &options, WorkSpace &work);
+  PetscErrorCode create(const Domain &domain, GhostExchange &exchange, const AcmIterativeOptions &options,
+                        WorkSpace &work);
 
   /// Solves for the increment, which has zero mean if no boundary is open. It is NaN if D is not finite somewhere.
   PetscErrorCode solve(double dt, const Field &divergence, Field &pressure, Field &increment) override;
@@ -46,7 +47,7 @@ private:
 
   const Domain *domain_ = nullptr;
   GhostExchange *exchange_ = nullptr;
-  AcmSweepOptions options_;
+  AcmIterativeOptions options_;
   std::unique_ptr<Multigrid> multigrid_;
   WorkSpace *work_ = nullptr;
   Field residual_, before_, direction_;  ///< parts of the work space, during a solve

@@ -1,9 +1,9 @@
-#include "field/sides.hpp"
+#include "field/boundaries.hpp"
 
 #include "field/carried_tensor.hpp"
 
 #include "base/events.hpp"
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 #include "field/reflection.hpp"
 #include "grid/blocks.hpp"
 
@@ -53,7 +53,7 @@ void reflect(const Box &box, View q, int d, bool high, bool staggered, Reflectio
 namespace {
 
 // Sets the points on one boundary of a field that is staggered in d to 0, also where they are ghosts of this rank.
-// Zeros are not written, so that pages on demand stay unallocated (Field::at_rest).
+// Zeros are not written, so that pages on demand stay unallocated (Field::on_demand).
 void clear_face(const Box &box, View q, int d, bool high) {
   const Layout &layout = box.layout();
   const Plane plane(layout, d);
@@ -81,15 +81,16 @@ Real3 WallMotion::at(double time) const {
 
 double WallMotion::speed() const { return std::hypot(velocity[0], velocity[1], velocity[2]); }
 
-double wall_speed(const BoxSides &sides) {
+double wall_speed(const BoundaryConditions &sides) {
   double speed = 0;
   for (const auto &pair : sides)
-    for (const Side &side : pair) speed = std::max(speed, side.motion.speed());
+    for (const BoundaryCondition &side : pair) speed = std::max(speed, side.motion.speed());
   return speed;
 }
 
-void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, Field &velocity, int width) {
-  VerbScope scope(Verb::wall_ghosts);
+void fill_wall_ghosts_velocity(const Box &box, const BoundaryConditions &sides, double time, Field &velocity,
+                               int width) {
+  EventScope scope(Event::wall_ghosts);
   const int dimension = box.dimension();
   for (int c = 0; c < velocity.count(); ++c) {
     if (box.is_wall(c)) {
@@ -100,11 +101,11 @@ void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double tim
       const int d = (c + e) % dimension;  // the normal direction first, so that a rotated scene has rotated corners
       for (const bool high : {false, true}) {
         if (!box.touches(d, high)) continue;
-        const Side &side = sides[d][high];
+        const BoundaryCondition &side = sides[d][high];
         Reflection rule{-1, 0};
-        if (is_open(side.kind) || (c != d && side.kind == SideKind::symmetry))
+        if (is_open(side.kind) || (c != d && side.kind == BoundaryKind::symmetry))
           rule.sign = 1;
-        else if (c == d && side.kind == SideKind::inflow)
+        else if (c == d && side.kind == BoundaryKind::inflow)
           rule.about_face = true;
         else if (c != d)
           rule.twice_wall = 2 * side.motion.at(time)[c];
@@ -119,20 +120,21 @@ void fill_wall_ghosts_even(const Box &box, const Staggering &staggering, View fi
   for (const auto [d, high] : box.sides()) reflect(box, field, d, high, staggering[d], {1.0, 0.0}, width, rows);
 }
 
-void clear_solid_ghosts(const Box &box, const BoxSides &sides, View field, int width, const OccupiedRows *rows) {
+void clear_solid_ghosts(const Box &box, const BoundaryConditions &sides, View field, int width,
+                        const OccupiedRows *rows) {
   for (const auto [d, high] : box.sides())
     if (is_solid(sides[d][high].kind)) reflect(box, field, d, high, false, {0.0, 0.0}, width, rows);
 }
 
-void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, Field &tensor, int width,
+void fill_wall_ghosts_tensor(const Box &box, const BoundaryConditions &sides, Field &tensor, int width,
                              const OccupiedRows *rows) {
-  VerbScope scope(Verb::wall_ghosts);
+  EventScope scope(Event::wall_ghosts);
   clear_symmetry_planes(box, sides, tensor);
   const auto &components = tensor_components(box.dimension());
   for (int c = 0; c < tensor.count(); ++c) {
     const Staggering at = components[c].at;
     for (const auto [d, high] : box.sides()) {
-      const bool odd = at[d] && sides[d][high].kind == SideKind::symmetry;
+      const bool odd = at[d] && sides[d][high].kind == BoundaryKind::symmetry;
       reflect(box, tensor[c], d, high, at[d], {odd ? -1.0 : 1.0, 0.0}, width, rows);
     }
   }
@@ -145,10 +147,10 @@ void fill_wall_ghosts_centred_tensor(const Box &box, Field &tensor, int width, c
       reflect(box, tensor[c], d, high, false, {components[c].at[d] ? -1.0 : 1.0, 0.0}, width, rows);
 }
 
-void clear_symmetry_planes(const Box &box, const BoxSides &sides, Field &tensor) {
+void clear_symmetry_planes(const Box &box, const BoundaryConditions &sides, Field &tensor) {
   const auto &components = tensor_components(box.dimension());
   for (const auto [d, high] : box.sides())
-    for (int c = 0; sides[d][high].kind == SideKind::symmetry && c < tensor.count(); ++c)
+    for (int c = 0; sides[d][high].kind == BoundaryKind::symmetry && c < tensor.count(); ++c)
       if (components[c].at[d]) clear_face(box, tensor[c], d, high);
 }
 

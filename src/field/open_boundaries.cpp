@@ -1,6 +1,6 @@
-#include "field/open_sides.hpp"
+#include "field/open_boundaries.hpp"
 
-#include "field/fed_velocity.hpp"
+#include "field/inlet_velocity.hpp"
 #include "field/reflection.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace eulastic {
 // Ghosts across periodic boundaries have the profile of their image; ghosts behind other boundaries that of the nearest
 // cell.
-double inflow_shape(const Box &box, const Side &side, int d, const Int3 &local) {
+double inflow_shape(const Box &box, const BoundaryCondition &side, int d, const Int3 &local) {
   if (!side.profile || side.profile->empty()) return 1;
   std::size_t place = 0;
   for (int e = 2; e >= 0; --e) {
@@ -20,7 +20,8 @@ double inflow_shape(const Box &box, const Side &side, int d, const Int3 &local) 
   return (*side.profile)[place];
 }
 
-void set_inflow_row(const Box &box, const Side &side, int d, bool high, double given, Segment row, View component) {
+void set_inflow_row(const Box &box, const BoundaryCondition &side, int d, bool high, double given, Segment row,
+                    View component) {
   const double along = high ? -given : given;
   if (d == 0) {
     row.i_begin = high ? box.domain_cells()[0] - box.layout().begin[0] : -box.layout().begin[0];
@@ -30,12 +31,12 @@ void set_inflow_row(const Box &box, const Side &side, int d, bool high, double g
   for (int i = row.i_begin; i < row.i_end; ++i) face[i] = along * inflow_shape(box, side, d, {i, row.j, row.k});
 }
 
-void set_inflow_faces(const Box &box, const BoxSides &sides, double time, View component, int d) {
+void set_inflow_faces(const Box &box, const BoundaryConditions &sides, double time, View component, int d) {
   const Layout &layout = box.layout();
   for (const bool high : {false, true}) {
-    const Side &side = sides[d][high];
+    const BoundaryCondition &side = sides[d][high];
     const int local = (high ? box.domain_cells()[d] : 0) - layout.begin[d];
-    if (side.kind != SideKind::inflow || local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d])
+    if (side.kind != BoundaryKind::inflow || local < -layout.ghosts[d] || local >= layout.cells[d] + layout.ghosts[d])
       continue;
     const double given = side.given.at(time);
     const Plane plane(layout, d);
@@ -57,17 +58,17 @@ void fill_ghosts_of_increment(const Box &box, View field, int width) {
     reflect(box, field, d, high, false, {box.is_open(d, high) ? -1.0 : 1.0, 0.0}, width);
 }
 
-void fill_ghosts_of_given_pressure(const Box &box, const BoxSides &sides, double time, double density,
+void fill_ghosts_of_given_pressure(const Box &box, const BoundaryConditions &sides, double time, double density,
                                    const Field &velocity, View pressure) {
   for (const auto [d, high] : box.sides()) {
     if (!box.is_open(d, high)) continue;
-    const bool outflow = sides[d][high].kind == SideKind::outflow;
+    const bool outflow = sides[d][high].kind == BoundaryKind::outflow;
     const double given = outflow ? 0 : sides[d][high].given.at(time);
     const ConstView normal = velocity[d];
     const std::ptrdiff_t outward = high ? pressure.stride(d) : -pressure.stride(d),
                          to_face = high ? normal.stride(d) : 0;
     const double sign = high ? -1 : 1;
-    for_points(box.cells_at(d, high, 1), [&](int i, int j, int k) {
+    for_points(box.boundary_cells(d, high, 1), [&](int i, int j, int k) {
       const double inward = sign * (&normal(i, j, k))[to_face];
       const double dynamic_pressure = outflow && inward > 0 ? 0.5 * density * (inward * inward) : 0;
       double *p = &pressure(i, j, k);
@@ -81,32 +82,32 @@ void clear_open_ghosts(const Box &box, View field, int width) {
     if (box.is_open(d, high)) reflect(box, field, d, high, false, {0.0, 0.0}, width);
 }
 
-bool volume_crosses(const BoxSides &sides) {
+bool fluid_crosses(const BoundaryConditions &sides) {
   for (const auto &pair : sides)
-    for (const Side &side : pair)
-      if (volume_crosses(side.kind)) return true;
+    for (const BoundaryCondition &side : pair)
+      if (fluid_crosses(side.kind)) return true;
   return false;
 }
 
-bool has_inlet_generators(const BoxSides &sides) {
+bool has_inlet_generators(const BoundaryConditions &sides) {
   return std::any_of(sides.begin(), sides.end(),
                      [](const auto &pair) { return pair[0].generator_cells || pair[1].generator_cells; });
 }
 
-bool opens(const BoxSides &sides) {
+bool has_open_boundary(const BoundaryConditions &sides) {
   for (const auto &pair : sides)
-    for (const Side &side : pair)
+    for (const BoundaryCondition &side : pair)
       if (is_open(side.kind)) return true;
   return false;
 }
 
-Real3 pressure_drive(const BoxSides &sides, const Real3 &length, double density) {
+Real3 pressure_drive(const BoundaryConditions &sides, const Real3 &length, double density) {
   Real3 drive{};
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const auto &pair : sides)
-    for (const Side &side : pair) {
+    for (const BoundaryCondition &side : pair) {
       if (!is_open(side.kind)) continue;
-      const auto range = side.kind == SideKind::outflow ? std::array{0.0, 0.0} : side.given.range();
+      const auto range = side.kind == BoundaryKind::outflow ? std::array{0.0, 0.0} : side.given.range();
       low = std::min(low, range[0]);
       high = std::max(high, range[1]);
     }
@@ -116,11 +117,11 @@ Real3 pressure_drive(const BoxSides &sides, const Real3 &length, double density)
   return drive;
 }
 
-Real3 inflow_speed(const BoxSides &sides) {
+Real3 inflow_speed(const BoundaryConditions &sides) {
   Real3 speed{};
   for (int d = 0; d < 3; ++d)
-    for (const Side &side : sides[d]) {
-      if (side.kind != SideKind::inflow) continue;
+    for (const BoundaryCondition &side : sides[d]) {
+      if (side.kind != BoundaryKind::inflow) continue;
       double most = 0;
       if (!side.profile || side.profile->empty())
         most = 1;

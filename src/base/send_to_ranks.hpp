@@ -11,7 +11,7 @@ namespace eulastic {
 /// Sends record n to ranks[n], and replaces `records` by those that arrived, ordered by the sending rank. Collective;
 /// messages pass between the ranks concerned only.
 template <class T>
-PetscErrorCode deliver(MPI_Comm comm, const std::vector<int> &ranks, std::vector<T> *records) {
+PetscErrorCode send_to_ranks(MPI_Comm comm, const std::vector<int> &ranks, std::vector<T> *records) {
   SfHandle sf;
   const PetscInt *arriving;
   std::vector<PetscSFNode> targets;

@@ -1,4 +1,4 @@
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 
 #include "bodies/labels.hpp"
 #include "boxes/boxed_bodies.hpp"
@@ -7,17 +7,17 @@
 
 namespace eulastic {
 
-std::size_t Looks::bytes() const {
+std::size_t SynchronisedState::bytes() const {
   std::size_t sum = 0;
   for (const Phase &phase : advanced_) sum += phase.bytes();
   return sum;
 }
 
-PetscErrorCode Looks::phases(const std::vector<Phase> **phases) {
+PetscErrorCode SynchronisedState::phases(const std::vector<Phase> **phases) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
   *phases = &now.phases;
-  if (!flow_.is_behind() || half_step_behind_) PetscFunctionReturn(0);
+  if (!flow_.phases_lag() || half_step_behind_) PetscFunctionReturn(0);
   *phases = &advanced_;
   if (advanced_step_ == now.step) PetscFunctionReturn(0);
   advanced_.resize(now.phases.size());
@@ -35,11 +35,12 @@ PetscErrorCode Looks::phases(const std::vector<Phase> **phases) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Looks::bodies(std::vector<BodyInBox> *bodies) {
-  return boxed_.look(flow_.is_behind() && !half_step_behind_ ? 0.5 * flow_.now.dt - time_before_end_ : 0, bodies);
+PetscErrorCode SynchronisedState::bodies(std::vector<BodyInBox> *bodies) {
+  return boxed_.look(flow_.phases_lag() && !half_step_behind_ ? 0.5 * flow_.now.dt - time_before_end_ : 0, bodies);
 }
 
-PetscErrorCode Looks::on_grid(const std::function<PetscErrorCode(const std::vector<Phase> &)> &look) {
+PetscErrorCode SynchronisedState::with_bodies_on_grid(
+    const std::function<PetscErrorCode(const std::vector<Phase> &)> &look) {
   const std::vector<Phase> *measured = nullptr;
   std::vector<BodyInBox> boxed;
   PetscFunctionBeginUser;
@@ -52,7 +53,7 @@ PetscErrorCode Looks::on_grid(const std::function<PetscErrorCode(const std::vect
 
 // Labels and travelling rigid bodies are updated on a schedule of the run. For observers they are brought up to date in
 // copies, which are swapped in and out.
-PetscErrorCode Looks::behind(const Look &look) {
+PetscErrorCode SynchronisedState::at_half_step(const Observer &look) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
   advanced_step_ = -1;
@@ -87,7 +88,7 @@ PetscErrorCode Looks::behind(const Look &look) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Looks::back(const std::vector<double> &times, const Look &look) {
+PetscErrorCode SynchronisedState::replay_last_step(const std::vector<double> &times, const Observer &look) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
   if (times.empty()) PetscFunctionReturn(0);
@@ -95,7 +96,7 @@ PetscErrorCode Looks::back(const std::vector<double> &times, const Look &look) {
   begin.copy_from(flow_.velocity_star);  // the projection has swapped the two
   end.copy_from(now.velocity);
   struct Restore {
-    Looks *looks;
+    SynchronisedState *looks;
     const Field &velocity;
     double time;
     ~Restore() {

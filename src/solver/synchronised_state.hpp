@@ -9,9 +9,9 @@ namespace eulastic {
 
 class BoxedBodies;
 
-class Looks {
+class SynchronisedState {
 public:
-  Looks(Flow *flow, BoxedBodies *boxed) : flow_(*flow), boxed_(*boxed) {}
+  SynchronisedState(Flow *flow, BoxedBodies *boxed) : flow_(*flow), boxed_(*boxed) {}
 
   /// Phases at the time of the velocity. Valid until the next step. Collective.
   PetscErrorCode phases(const std::vector<Phase> **phases);
@@ -20,14 +20,14 @@ public:
   PetscErrorCode bodies(std::vector<BodyInBox> *bodies);
   /// Calls look(phases) while the phases of species whose bodies are in boxes hold these bodies on the grid: phi is the
   /// sum, B and label are those of the body with the largest phi. Collective.
-  PetscErrorCode on_grid(const std::function<PetscErrorCode(const std::vector<Phase> &)> &look);
+  PetscErrorCode with_bodies_on_grid(const std::function<PetscErrorCode(const std::vector<Phase> &)> &look);
   /// Calls look() with phases() and bodies() as stored, half a step behind the velocity. Requires phases half a step
   /// behind.
-  PetscErrorCode behind(const Look &look);
+  PetscErrorCode at_half_step(const Observer &look);
   /// Calls look() for each of `times` within the last step, with velocity and phases of that time to second order, and
   /// the pressure of the step. The state is restored. Requires the staggered method; call after a step and before
   /// phases().
-  PetscErrorCode back(const std::vector<double> &times, const Look &look);
+  PetscErrorCode replay_last_step(const std::vector<double> &times, const Observer &look);
   std::size_t bytes() const;
 
 private:

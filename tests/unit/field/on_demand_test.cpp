@@ -1,6 +1,6 @@
 // Fields with memory on demand: only pages that are written are allocated.
 #include "output/saved_state.hpp"
-#include "solver/looks.hpp"
+#include "solver/synchronised_state.hpp"
 #include "support/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(AtRest, OnesThenZerosGhostsIncluded) {
     ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(n)), 0);
     const std::ptrdiff_t size = domain.layout().size;
     for (const int ones : {0, 2, 3}) {
-      const Field block = Field::at_rest(domain, 3, ones);
+      const Field block = Field::on_demand(domain, 3, ones);
       for (std::ptrdiff_t at = 0; at < 3 * size; ++at) ASSERT_EQ(block.data()[at], at < ones * size) << at;
     }
   }
@@ -47,8 +47,8 @@ TEST(AtRest, OnesThenZerosGhostsIncluded) {
 TEST(AtRest, BlocksDoNotShareWhatIsWritten) {
   Domain domain;
   ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(64)), 0);
-  Field a = Field::at_rest(domain, 1, 1);
-  const Field b = Field::at_rest(domain, 1, 1);
+  Field a = Field::on_demand(domain, 1, 1);
+  const Field b = Field::on_demand(domain, 1, 1);
   a[0](3, 4, 5) = 7;
   EXPECT_EQ(a[0](3, 4, 5), 7);
   EXPECT_EQ(b[0](3, 4, 5), 1);
@@ -59,7 +59,7 @@ TEST(AtRest, ReadingAndCopyingTakeNoMemory) {
   Domain domain;
   ASSERT_EQ(domain.create(PETSC_COMM_SELF, box(128)), 0);
   const double before = own_memory();
-  Field block = Field::at_rest(domain, 4, 2), copy;
+  Field block = Field::on_demand(domain, 4, 2), copy;
   const double all = double(block.bytes());
   ASSERT_GT(all, 64 * mega);
   EXPECT_EQ(sum(block), 2.0 * domain.layout().size);
@@ -71,7 +71,7 @@ TEST(AtRest, ReadingAndCopyingTakeNoMemory) {
   copy.copy_from(block);
   EXPECT_EQ(copy[1](5, 64, 5), 1);
   EXPECT_EQ(copy[1](6, 64, 6), 3);
-  copy.leave_rest();
+  copy.allocate_fully();
   EXPECT_EQ(sum(copy), sum(block));
 }
 
@@ -99,7 +99,7 @@ void expect_little_memory(MethodKind kind) {
   const double before = own_memory(), field = double(scene.domain.layout().size) * sizeof(double);
   for (int step = 0; step < 3; ++step) ASSERT_EQ(scene.solver.step(1e-4), 0);
   const std::vector<Phase> *phases = nullptr;
-  ASSERT_EQ(scene.solver.looks().phases(&phases), 0);
+  ASSERT_EQ(scene.solver.synchronised().phases(&phases), 0);
   std::uint64_t hash = 0;
   ASSERT_EQ(state_hash(&scene.solver, &hash), 0);
   EXPECT_GT((*phases)[0].tensor.field[0](53, 53, 53), 1.1);

@@ -27,17 +27,17 @@ struct WallMotion {
 };
 
 /// The kind of a boundary condition.
-enum class SideKind : unsigned char { wall, symmetry, inflow, pressure, outflow };
+enum class BoundaryKind : unsigned char { wall, symmetry, inflow, pressure, outflow };
 /// Whether the pressure is given, so that fluid may cross the boundary in either direction.
-constexpr bool is_open(SideKind kind) { return kind == SideKind::pressure || kind == SideKind::outflow; }
+constexpr bool is_open(BoundaryKind kind) { return kind == BoundaryKind::pressure || kind == BoundaryKind::outflow; }
 /// Whether bodies end at the boundary: phi behind it is 0, and bodies do not leave through it.
-constexpr bool is_solid(SideKind kind) { return kind == SideKind::wall || kind == SideKind::inflow; }
-constexpr bool volume_crosses(SideKind kind) { return is_open(kind) || kind == SideKind::inflow; }
+constexpr bool is_solid(BoundaryKind kind) { return kind == BoundaryKind::wall || kind == BoundaryKind::inflow; }
+constexpr bool fluid_crosses(BoundaryKind kind) { return is_open(kind) || kind == BoundaryKind::inflow; }
 
 /// Shape of the velocity on an inflow boundary, for all its cells, x before y before z; empty: 1 everywhere.
-using SideProfile = std::vector<double>;
+using InflowProfile = std::vector<double>;
 
-class FedVelocity;
+class InletVelocity;
 
 /// A load behind a pressure boundary: p = given + resistance Q + p_c, capacity dp_c/dt = Q - p_c/drain, with the flow
 /// rate Q out of the box.
@@ -48,41 +48,43 @@ struct OutletLoad {
 };
 
 /// The boundary condition on one face of the box.
-struct Side {
-  SideKind kind = SideKind::wall;
-  WallMotion motion;                           ///< velocity of a wall
-  TimeCourse given;                            ///< inflow: factor of the profile; pressure: the pressure
-  std::shared_ptr<const SideProfile> profile;  ///< profile of an inflow boundary
+struct BoundaryCondition {
+  BoundaryKind kind = BoundaryKind::wall;
+  WallMotion motion;                             ///< velocity of a wall
+  TimeCourse given;                              ///< inflow: factor of the profile; pressure: the pressure
+  std::shared_ptr<const InflowProfile> profile;  ///< profile of an inflow boundary
   int generator_cells = 0;  ///< length in cells of the inlet generator beside an inflow boundary; 0: none
-  std::shared_ptr<const FedVelocity> fed;  ///< last velocity of the inlet generator, which replaces given times profile
-  OutletLoad load;                         ///< load behind a pressure boundary
+  std::shared_ptr<const InletVelocity>
+      fed;          ///< last velocity of the inlet generator, which replaces given times profile
+  OutletLoad load;  ///< load behind a pressure boundary
 };
 
 /// [direction][low, high]; not used in periodic directions.
-using BoxSides = std::array<std::array<Side, 2>, 3>;
+using BoundaryConditions = std::array<std::array<BoundaryCondition, 2>, 3>;
 /// Returns the largest speed of any wall.
-double wall_speed(const BoxSides &sides);
+double wall_speed(const BoundaryConditions &sides);
 
 /// Sets velocity component d, or a part of it, to 0 on the boundaries of direction d that are not open, including faces
 /// on the boundary of a neighbour that are ghosts of this rank.
 void close_wall_faces(const Box &box, View component, int d);
 /// Fills `width` layers of velocity ghosts behind every boundary that this rank touches, and sets the faces on closed
 /// boundaries to 0 or to the inflow. Ghosts from other ranks must be valid. `velocity` holds u, v (, w).
-void fill_wall_ghosts_velocity(const Box &box, const BoxSides &sides, double time, Field &velocity, int width);
+void fill_wall_ghosts_velocity(const Box &box, const BoundaryConditions &sides, double time, Field &velocity,
+                               int width);
 /// Fills `width` ghost layers of a field of the given staggering by even reflection, also behind boundaries of a
 /// neighbour where ghosts reach beyond them. Rows that `rows` marks as idle before the boundary are skipped.
 void fill_wall_ghosts_even(const Box &box, const Staggering &staggering, View field, int width,
                            const OccupiedRows *rows = nullptr);
 /// Sets ghosts at centres behind solid boundaries to 0, for fractions of bodies that end there. Ghosts behind other
 /// boundaries do not change.
-void clear_solid_ghosts(const Box &box, const BoxSides &sides, View field, int width,
+void clear_solid_ghosts(const Box &box, const BoundaryConditions &sides, View field, int width,
                         const OccupiedRows *rows = nullptr);
 /// Fills ghosts of all components of a left Cauchy-Green tensor.
-void fill_wall_ghosts_tensor(const Box &box, const BoxSides &sides, Field &tensor, int width,
+void fill_wall_ghosts_tensor(const Box &box, const BoundaryConditions &sides, Field &tensor, int width,
                              const OccupiedRows *rows = nullptr);
 /// Fills ghosts of a tensor with all components at centres by the mirror image.
 void fill_wall_ghosts_centred_tensor(const Box &box, Field &tensor, int width, const OccupiedRows *rows);
 /// Sets components of a left Cauchy-Green tensor on planes of symmetry to 0, including ghosts of the other directions.
-void clear_symmetry_planes(const Box &box, const BoxSides &sides, Field &tensor);
+void clear_symmetry_planes(const Box &box, const BoundaryConditions &sides, Field &tensor);
 
 }  // namespace eulastic
