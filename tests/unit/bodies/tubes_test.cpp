@@ -141,5 +141,5 @@ TEST(Tube, RefusesALumenThatLeavesTheBox) {
   EXPECT_NE(refusal_reason(two, grid).find("placed once"), std::string::npos);
   two.placement = Placement::one;
   two.orientation = {0, 0, 90};
-  EXPECT_NE(refusal_reason(two, grid).find("cannot be turned"), std::string::npos);
+  EXPECT_NE(refusal_reason(two, grid).find("cannot be rotated"), std::string::npos);
 }
