@@ -61,7 +61,7 @@ def read_options(path, depth=0):
     other. ValueError names the file and the line that the program would refuse, too."""
     path, own, brought_in = pathlib.Path(path), {}, {}
     if depth > DEPTH_MAX:
-        raise ValueError(f"-options_file: {path} brings in itself")
+        raise ValueError(f"-options_file: {path} includes itself")
     for number, line in enumerate(path.read_text().split("\n"), 1):
         try:
             found = pairs(split_words(line))
