@@ -38,6 +38,11 @@ EULASTIC_CLONES void add_row(int begin, int end, double factor, Row more, Target
   for (int i = begin; i < end; ++i) out[i] = kernels::fma(factor, more[i], out[i]);
 }
 
+EULASTIC_CLONES void mean_row(int begin, int end, Row other, Target out) {
+#pragma omp simd
+  for (int i = begin; i < end; ++i) out[i] = 0.5 * (out[i] + other[i]);
+}
+
 struct Iteration {
   double along_last, step;  // beta, alpha
 };
@@ -86,8 +91,7 @@ PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoundaryCon
   }
   for (Field *field : {&residual_, &correction_, &product_, &direction_, &direction_product_})
     *field = Field(domain, dim);
-  cycle_ = Field(domain, 1);
-  scratch_ = Field(domain, 1);
+  for (Field *field : {&cycle_, &shifted_, &scratch_}) *field = Field(domain, 1);
   const auto is_given = [&](int a) { return domain.touches_low(a) && !domain.is_open(a, false); };
   for (const Segment &row : domain.rows())
     for (int a = 0; a < dim; ++a) {
@@ -101,7 +105,7 @@ PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoundaryCon
 }
 
 std::size_t ImplicitViscosity::bytes() const {
-  std::size_t sum = cycle_.bytes() + scratch_.bytes();
+  std::size_t sum = cycle_.bytes() + shifted_.bytes() + scratch_.bytes();
   for (const auto &[boundaries, cycle] : cycles_) sum += cycle.bytes();
   for (const Field *field : {&residual_, &correction_, &product_, &direction_, &direction_product_})
     sum += field->bytes();
@@ -160,26 +164,48 @@ void ImplicitViscosity::weight_open_faces(double factor, Field &field) const {
     }
 }
 
-// correction = V residual, about the solution of (lap - 1/(part nu)) correction = residual.
+// correction = V residual, about the solution of (lap - 1/(part nu)) correction = residual. The V-cycle takes the faces
+// of component a as cells, face i as cell i. As that is not its own mirror image along a, the mean is taken with face i
+// + 1 as cell i, so that mirrored scenes have mirrored results.
 PetscErrorCode ImplicitViscosity::precondition(GhostExchange &exchange) {
   PetscFunctionBeginUser;
   PetscCall(exchange.update_ghosts(residual_, Multigrid::halo));
   for (int a = 0; a < domain_->dimension(); ++a) {
     Multigrid &cycle = cycles_[boundaries_[a]];
-    PetscCall(cycle.apply(residual_.part(a, 1), cycle_, scratch_));
-    const double beside = cycle.step();
     const int end = domain_->cells()[a];
+    const std::ptrdiff_t next = residual_[a].stride(a);
+    PetscCall(cycle.apply(residual_.part(a, 1), cycle_, scratch_));
+    for_faces([&](int component, const Segment &row) {
+      if (component == a) take_cycle(a, row, end, 0, cycle.step(), correction_[a].row(row.j, row.k));
+    });
+    in_segment_parts(domain_->rows(), *domain_, [&](const Segment *begin, const Segment *last) {
+      for (const Segment *row = begin; row < last; ++row) {
+        const double *from = residual_[a].row(row->j, row->k) + next;
+        std::copy(from + row->i_begin, from + row->i_end, shifted_[0].row(row->j, row->k) + row->i_begin);
+      }
+    });
+    PetscCall(exchange.update_ghosts(shifted_, Multigrid::halo));
+    PetscCall(cycle.apply(shifted_, cycle_, scratch_));
     for_faces([&](int component, const Segment &row) {
       if (component != a) return;
-      const double *from = cycle_[0].row(row.j, row.k), *r = residual_[a].row(row.j, row.k);
-      double *to = correction_[a].row(row.j, row.k);
-      std::copy(from + row.i_begin, from + row.i_end, to + row.i_begin);
-      if (a == 0 && row.i_end > end) to[end] = beside * r[end];
-      if ((a == 1 && row.j == end) || (a == 2 && row.k == end))
-        for (int i = row.i_begin; i < row.i_end; ++i) to[i] = beside * r[i];
+      thread_local std::vector<double> other;
+      other.resize(row.i_end);
+      take_cycle(a, row, domain_->touches_low(a) && domain_->is_open(a, false) ? 0 : -1, -next, cycle.step(),
+                 other.data());
+      mean_row(row.i_begin, row.i_end, other.data(), correction_[a].row(row.j, row.k));
     });
   }
   PetscFunctionReturn(0);
+}
+
+// Copies a V-cycle's result for faces of component a in a row from cells `offset` away. The faces with the index
+// `alone` along a have no cell; a relaxation takes the place of the V-cycle there.
+void ImplicitViscosity::take_cycle(int a, const Segment &row, int alone, std::ptrdiff_t offset, double relaxation,
+                                   double *to) const {
+  const double *from = cycle_[0].row(row.j, row.k) + offset, *r = residual_[a].row(row.j, row.k);
+  const bool whole_row = (a == 1 && row.j == alone) || (a == 2 && row.k == alone);
+  for (int i = row.i_begin; i < row.i_end; ++i)
+    to[i] = whole_row || (a == 0 && i == alone) ? relaxation * r[i] : from[i];
 }
 
 // product = (1 - part L) correction.

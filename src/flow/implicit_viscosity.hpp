@@ -41,6 +41,7 @@ private:
   PetscErrorCode sum_of_squares(const Field &field, double *result);
   void weight_open_faces(double factor, Field &field) const;
   PetscErrorCode precondition(GhostExchange &exchange);
+  void take_cycle(int a, const Segment &row, int alone, std::ptrdiff_t offset, double relaxation, double *to) const;
   PetscErrorCode multiply(GhostExchange &exchange, const ViscousStep &step, double part);
   PetscErrorCode add_boundaries(GhostExchange &exchange, const ViscousStep &step, double from, double to, double part,
                                 Field &right_side);
@@ -58,7 +59,7 @@ private:
   std::array<ZeroSides, 3> boundaries_{};  ///< of every component
   Field residual_, correction_, product_, direction_, direction_product_;  ///< velocity blocks; ghosts behind sides of
                                                                            ///< the residual are 0
-  Field cycle_, scratch_;
+  Field cycle_, shifted_, scratch_;
 };
 
 }  // namespace eulastic

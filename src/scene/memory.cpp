@@ -102,7 +102,7 @@ double fields(const Config &config) {
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
   if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
   if (contrast.exists() && !rigid && method.viscous == ViscousScheme::rkl)  // ImplicitViscosity
-    sum += 5 * dimension + 2 + (dimension == 2 ? 1 : 0.4);
+    sum += 5 * dimension + 3 + (dimension == 2 ? 1 : 0.4);
   if (Scheme::extrapolates_pressure(method, contrast, travels)) sum += 1;  // pressure before
   return sum;
 }
