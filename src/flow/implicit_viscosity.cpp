@@ -78,12 +78,12 @@ ZeroSides zero_sides(const Box &box, const BoundaryConditions &sides, int a) {
 
 }  // namespace
 
-PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoundaryConditions &sides, double viscosity,
-                                         double tolerance) {
+PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoundaryConditions &sides, double least,
+                                         double largest, double tolerance) {
   PetscFunctionBeginUser;
   domain_ = &domain;
-  viscosity_ = viscosity;
-  tolerance_ = tolerance;
+  viscosity_ = std::sqrt(least * largest);
+  tolerance_ = tolerance * std::min(1.0, 10 * std::sqrt(least / largest));
   const int dim = domain.dimension();
   for (int a = 0; a < dim; ++a) {
     boundaries_[a] = zero_sides(domain, sides, a);

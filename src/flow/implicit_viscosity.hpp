@@ -12,10 +12,12 @@ namespace eulastic {
 
 class ImplicitViscosity {
 public:
-  /// Builds the V-cycles for increments of the velocity, which are 0 on closed boundaries. `viscosity`: of the
-  /// V-cycles, kinematic, between the least and the largest one. `tolerance`: of the residual of each system, relative
-  /// to its right-hand side. Collective.
-  PetscErrorCode create(const Domain &domain, const BoundaryConditions &sides, double viscosity, double tolerance);
+  /// Builds the V-cycles for increments of the velocity, which are 0 on closed boundaries, with the geometric mean of
+  /// the `least` and the `largest` kinematic viscosity. `tolerance`: of the residual of each system, relative to its
+  /// right-hand side; it is lowered by 10 sqrt(least/largest) for contrasts above 100, because the residual then hides
+  /// errors where the viscosity is least. Collective.
+  PetscErrorCode create(const Domain &domain, const BoundaryConditions &sides, double least, double largest,
+                        double tolerance);
   /// v* = v + W(dt) like super_time_step(), from `step.local`; `step.rigid` must be null. `rate`: M_0, lost. `slope`:
   /// M_1, or null. Fails if a system does not converge. Collective.
   PetscErrorCode step(GhostExchange &exchange, const ViscousStep &step, Field &rate, const Field *slope,

@@ -25,9 +25,8 @@ PetscErrorCode FastStep::start() {
   if (viscosity_ && !flow_.rigid && flow_.spec.viscous == ViscousScheme::rkl) {
     const ViscosityContrast range = contrast({});
     implicit_ = std::make_unique<ImplicitViscosity>();
-    PetscCall(implicit_->create(flow_.domain, flow_.spec.sides,
-                                std::sqrt(range.least * range.most) / flow_.fluid.density,
-                                flow_.spec.viscous_tolerance));
+    PetscCall(implicit_->create(flow_.domain, flow_.spec.sides, range.least / flow_.fluid.density,
+                                range.most / flow_.fluid.density, flow_.spec.viscous_tolerance));
   }
   if (now.phases.empty() || !flow_.spec.linear_force()) PetscFunctionReturn(0);
   flow_.velocity_star = {};
