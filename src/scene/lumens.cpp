@@ -100,7 +100,7 @@ std::vector<std::string> lumen_warnings(const Config &config) {
     if (part.lumens > 0 && part.cells < least_cells * (1 - round_off))
       warnings.push_back(
           side + "only " + number(part.cells, 3) +
-          " cells across the lumen: with fewer than 8 the error of its flow is several per cent, with 16 below 1 %");
+          " cells across the lumen: with fewer than 8 its flow is several per cent off, with 16 less than 1 %");
     if (const double reynolds = reynolds_number(config, d, high); reynolds > most_reynolds)
       warnings.push_back(side + "Reynolds number " + number(reynolds, 3) +
                          " of the lumen: a flow above 1e4 is turbulent, and there is no model of turbulence");
