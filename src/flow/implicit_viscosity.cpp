@@ -11,8 +11,8 @@
 namespace eulastic {
 namespace {
 
-const double share = 1 - std::sqrt(0.5);  // of the step in each of the two systems of SDIRK2
-constexpr int most_iterations = 1000;     // of a system
+const double share = 1 - std::sqrt(0.5);  // gamma of SDIRK2: the share of the step in each of its two systems
+constexpr int most_iterations = 1000;     // for one system
 
 using Row = const double *__restrict__;
 using Target = double *__restrict__;
@@ -66,7 +66,7 @@ bool moves(const BoundaryConditions &increments) {
   return false;
 }
 
-// Where an increment of component a is 0: on closed boundaries, on planes of symmetry if it is normal to them.
+// Returns where an increment of component a is 0: on closed boundaries, and on planes of symmetry normal to a.
 ZeroSides zero_sides(const Box &box, const BoundaryConditions &sides, int a) {
   ZeroSides zero{};
   for (const auto [d, high] : box.sides()) {
@@ -83,7 +83,8 @@ PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoundaryCon
   PetscFunctionBeginUser;
   domain_ = &domain;
   viscosity_ = std::sqrt(least * largest);
-  tolerance_ = tolerance * std::min(1.0, 10 * std::sqrt(least / largest));
+  tolerance_ = tolerance;
+  stricter_ = std::min(1.0, 10 * std::sqrt(least / largest));
   const int dim = domain.dimension();
   for (int a = 0; a < dim; ++a) {
     boundaries_[a] = zero_sides(domain, sides, a);
@@ -121,7 +122,8 @@ void ImplicitViscosity::for_faces(const Work &work) const {
   });
 }
 
-/// N sums over all faces of all ranks. product(a, row, i, add) calls add(s, x, y) for every sum s of products.
+// Computes N sums over all faces of all ranks. product(a, row) returns a function (i, add) that calls add(s, x, y) to
+// add the product x y to sum s.
 template <int N, class Product>
 PetscErrorCode ImplicitViscosity::sum(const Product &product, double *result) {
   PetscFunctionBeginUser;
@@ -152,7 +154,8 @@ PetscErrorCode ImplicitViscosity::sum_of_squares(const Field &field, double *res
   PetscFunctionReturn(0);
 }
 
-// Faces on open boundaries have half a control volume: with it as a weight the operator is symmetric.
+// Multiplies the faces on open boundaries by a factor. They have half a control volume, and with 1/2 as their weight
+// the operator is symmetric.
 void ImplicitViscosity::weight_open_faces(double factor, Field &field) const {
   for (int a = 0; a < domain_->dimension(); ++a)
     for (const bool high : {false, true}) {
@@ -164,9 +167,9 @@ void ImplicitViscosity::weight_open_faces(double factor, Field &field) const {
     }
 }
 
-// correction = V residual, about the solution of (lap - 1/(part nu)) correction = residual. The V-cycle takes the faces
-// of component a as cells, face i as cell i. As that is not its own mirror image along a, the mean is taken with face i
-// + 1 as cell i, so that mirrored scenes have mirrored results.
+// Sets correction = V residual, an approximate solution of (lap - 1/(part nu)) correction = residual. A V-cycle treats
+// the faces of component a as cells, face i as cell i, which is not symmetric along a. Its mean with a V-cycle that
+// treats face i + 1 as cell i is symmetric, so that mirrored scenes have mirrored results.
 PetscErrorCode ImplicitViscosity::precondition(GhostExchange &exchange) {
   PetscFunctionBeginUser;
   PetscCall(exchange.update_ghosts(residual_, Multigrid::halo));
@@ -186,6 +189,7 @@ PetscErrorCode ImplicitViscosity::precondition(GhostExchange &exchange) {
     });
     PetscCall(exchange.update_ghosts(shifted_, Multigrid::halo));
     PetscCall(cycle.apply(shifted_, cycle_, scratch_));
+    flops_ += 2 * cycle.flops();
     for_faces([&](int component, const Segment &row) {
       if (component != a) return;
       thread_local std::vector<double> other;
@@ -198,8 +202,8 @@ PetscErrorCode ImplicitViscosity::precondition(GhostExchange &exchange) {
   PetscFunctionReturn(0);
 }
 
-// Copies a V-cycle's result for faces of component a in a row from cells `offset` away. The faces with the index
-// `alone` along a have no cell; a relaxation takes the place of the V-cycle there.
+// Copies a V-cycle's result to the faces of component a in a row, from cells `offset` values away. Faces with the index
+// `alone` along a have no cell: one relaxation replaces the V-cycle there.
 void ImplicitViscosity::take_cycle(int a, const Segment &row, int alone, std::ptrdiff_t offset, double relaxation,
                                    double *to) const {
   const double *from = cycle_[0].row(row.j, row.k) + offset, *r = residual_[a].row(row.j, row.k);
@@ -208,7 +212,7 @@ void ImplicitViscosity::take_cycle(int a, const Segment &row, int alone, std::pt
     to[i] = whole_row || (a == 0 && i == alone) ? relaxation * r[i] : from[i];
 }
 
-// product = (1 - part L) correction.
+// Computes product = (1 - part L) correction.
 PetscErrorCode ImplicitViscosity::multiply(GhostExchange &exchange, const ViscousStep &step, double part) {
   PetscFunctionBeginUser;
   ++products_;
@@ -223,7 +227,7 @@ PetscErrorCode ImplicitViscosity::multiply(GhostExchange &exchange, const Viscou
   PetscFunctionReturn(0);
 }
 
-// Adds part times the viscous force of what boundaries have gained from one time to another.
+// Adds part times the viscous force of the increments of the boundaries' velocities between two times.
 PetscErrorCode ImplicitViscosity::add_boundaries(GhostExchange &exchange, const ViscousStep &step, double from,
                                                  double to, double part, Field &right_side) {
   PetscFunctionBeginUser;
@@ -237,7 +241,7 @@ PetscErrorCode ImplicitViscosity::add_boundaries(GhostExchange &exchange, const 
   PetscFunctionReturn(0);
 }
 
-// Y_1 - part L Y_1 = part (M_0 + (share - 1/2) dt M_1), from Y_1 = 0.
+// Sets up Y_1 - part L Y_1 = part (M_0 + (share - 1/2) dt M_1), with the initial guess Y_1 = 0.
 PetscErrorCode ImplicitViscosity::first_system(GhostExchange &exchange, const ViscousStep &step, double part,
                                                Field &rate, const Field *slope, Size *size) {
   PetscFunctionBeginUser;
@@ -257,8 +261,8 @@ PetscErrorCode ImplicitViscosity::first_system(GhostExchange &exchange, const Vi
   PetscFunctionReturn(0);
 }
 
-// Y_2 - part L Y_2 = (1 - share)/share Y_1 + part (M_0 + dt/2 M_1), from the multiple of Y_1 with the least error
-// in the norm of the operator.
+// Sets up Y_2 - part L Y_2 = (1 - share)/share Y_1 + part (M_0 + dt/2 M_1). The initial guess is the multiple of Y_1
+// with the least error in the norm of the operator.
 PetscErrorCode ImplicitViscosity::second_system(GhostExchange &exchange, const ViscousStep &step, double part,
                                                 Field &rate, const Field *slope, Field &solution, Size *size) {
   PetscFunctionBeginUser;
@@ -294,12 +298,14 @@ PetscErrorCode ImplicitViscosity::second_system(GhostExchange &exchange, const V
   PetscFunctionReturn(0);
 }
 
-// Flexible conjugate gradients, as the V-cycle is not quite symmetric: each direction is conjugate to the one before.
+// Conjugate gradients. Since the V-cycle is not exactly symmetric, they are flexible (Notay 2000): each direction is
+// made conjugate to the one before explicitly.
 PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousStep &step, double part, Size size,
                                         Field &solution) {
   PetscFunctionBeginUser;
-  const double enough = tolerance_ * tolerance_ * size.right_side;
-  double last = 0;  // of the last direction d, d . A d
+  const double relative = stricter_ * tolerance_, enough = relative * relative * size.right_side;
+  constexpr int flops_of_iteration = 20;  // per face: sums, directions, solution, residual
+  double last = 0;                        // of the last direction d, d . A d
   direction_.clear();
   direction_product_.clear();
   for (int n = 0; n < most_iterations && size.residual > enough; ++n) {
@@ -319,6 +325,7 @@ PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousSt
         sums));
     const double along_last = last > 0 ? -sums[1] / last : 0;
     last = sums[0] + along_last * sums[1];
+    if (!(last > 0)) break;  // underflow: no more can be gained
     const double factor = sums[2] / last;
     for_faces([&](int a, const Segment &row) {
       const auto at = [&](Field &field) { return field[a].row(row.j, row.k); };
@@ -326,6 +333,7 @@ PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousSt
                   at(direction_product_), at(solution), at(residual_));
     });
     PetscCall(sum_of_squares(residual_, &size.residual));
+    flops_ += flops_of_iteration * domain_->cell_count() * domain_->dimension();
   }
   if (size.residual > enough)
     SETERRQ(domain_->comm(), PETSC_ERR_NOT_CONVERGED,
@@ -343,6 +351,7 @@ PetscErrorCode ImplicitViscosity::step(GhostExchange &exchange, const ViscousSte
   const double part = share * step.dt;
   Size size{};
   products_ = 0;
+  flops_ = 0;
   for (auto &[boundaries, cycle] : cycles_) cycle.set_shift(1 / (part * viscosity_));
   Field solution = velocity_star.part(0, dim);
   solution.clear();
@@ -360,6 +369,7 @@ PetscErrorCode ImplicitViscosity::step(GhostExchange &exchange, const ViscousSte
         add_row(row->i_begin, row->i_end, 1, step.velocity[a].row(row->j, row->k), solution[a].row(row->j, row->k));
     });
   }
+  scope.flops(flops_);
   PetscFunctionReturn(0);
 }
 

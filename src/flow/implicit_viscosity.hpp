@@ -10,6 +10,7 @@
 
 namespace eulastic {
 
+/// The viscous part of a step as a whole, in place of the stages of super_time_step().
 class ImplicitViscosity {
 public:
   /// Builds the V-cycles for increments of the velocity, which are 0 on closed boundaries, with the geometric mean of
@@ -18,11 +19,11 @@ public:
   /// errors where the viscosity is least. Collective.
   PetscErrorCode create(const Domain &domain, const BoundaryConditions &sides, double least, double largest,
                         double tolerance);
-  /// v* = v + W(dt) like super_time_step(), from `step.local`; `step.rigid` must be null. `rate`: M_0, lost. `slope`:
-  /// M_1, or null. Fails if a system does not converge. Collective.
+  /// v* = v + W(dt) like super_time_step(), from `step.local`; `step.rigid` must be null. `rate`: M_0, overwritten.
+  /// `slope`: M_1, or null. Fails if a system does not converge. Collective.
   PetscErrorCode step(GhostExchange &exchange, const ViscousStep &step, Field &rate, const Field *slope,
                       Field &velocity_star);
-  /// How often the last step has evaluated the viscous force.
+  /// The number of evaluations of the viscous force in the last step.
   int products() const { return products_; }
   std::size_t bytes() const;
 
@@ -32,9 +33,8 @@ private:
     int a;
     Segment row;
   };
-  /// Sums of squares of the right-hand side and of the residual.
   struct Size {
-    double right_side, residual;
+    double right_side, residual;  ///< sums of squares
   };
   template <class Work>
   void for_faces(const Work &work) const;
@@ -54,7 +54,10 @@ private:
   PetscErrorCode solve(GhostExchange &exchange, const ViscousStep &step, double part, Size size, Field &solution);
 
   const Domain *domain_ = nullptr;
-  double viscosity_ = 0, tolerance_ = 0;
+  double viscosity_ = 0;  ///< of the V-cycles
+  double tolerance_ = 0;  ///< the option's
+  double stricter_ = 1;   ///< factor of the tolerance for large contrasts
+  double flops_ = 0;      ///< of the last step, without the viscous forces
   int products_ = 0;
   std::vector<Faces> faces_;
   std::map<ZeroSides, Multigrid> cycles_;  ///< of all components with the same boundaries
