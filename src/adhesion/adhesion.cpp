@@ -91,8 +91,8 @@ double Adhesion::reach_of_bodies() const {
   return reach;
 }
 
-// The box of a body holds it until all get other boxes; around it receptors find partners, surfaces move by a cell
-// until they are looked for again, and bonds end.
+// Returns the cells of a body's box, which contains the body until all boxes are refitted, and those around it within
+// reach of bonds, with a cell for the motion of surfaces between two searches.
 Extent Adhesion::hull_of(const FreeBodies::Body &body) const {
   const Domain &domain = flow_.domain;
   const bool on_grid = std::any_of(spec_.pairs.begin(), spec_.pairs.end(),
@@ -115,7 +115,7 @@ Extent Adhesion::hull_of(const FreeBodies::Body &body) const {
   return hull;
 }
 
-// What is near every body, if bodies have other boxes now, or surfaces may be elsewhere.
+// Finds the surroundings of all bodies again if boxes have been refitted or surfaces may have moved by a cell.
 PetscErrorCode Adhesion::look_around() {
   PetscFunctionBeginUser;
   if (fits_ == boxed_.bodies().fits() && travel_ <= 1) PetscFunctionReturn(0);
@@ -142,16 +142,16 @@ PetscErrorCode Adhesion::look_around() {
   PetscFunctionReturn(0);
 }
 
-// To the rank that owns the cell of a place, and back.
+// A request to the rank that owns the cell of a position, and its reply.
 struct Adhesion::Question {
-  int rank, body, receptor;  ///< who asks: positions
-  int pair;                  ///< a point of the surface of its second species is wanted; `anchor`: where that has moved
+  int rank, body, receptor;  ///< the sender, and indices there
+  int pair;                  ///< a point on the surface of its second species is requested; `anchor`: its new position
   bool found;
-  Real3 place;  ///< and the answer
+  Real3 place;  ///< position, replaced by the reply
   static constexpr int anchor = -1;
 };
 
-// Anchors move by the midpoint rule: on walls the velocity between faces is that of the wall.
+// Moves an anchor by the midpoint rule; on walls the interpolated velocity is that of the wall.
 void Adhesion::answer(double dt, Question *question) const {
   const Domain &domain = flow_.domain;
   Real3 &place = question->place;
@@ -210,7 +210,7 @@ PetscErrorCode Adhesion::ask_grid(double dt) {
   PetscFunctionReturn(0);
 }
 
-// Whether a place is within reach of a block.
+// Returns whether a position is within reach of a block.
 bool Adhesion::is_near(const Real3 &place, const Extent &box, double reach) const {
   const Domain &domain = flow_.domain;
   for (int d = 0; d < domain.dimension(); ++d) {
@@ -222,7 +222,7 @@ bool Adhesion::is_near(const Real3 &place, const Extent &box, double reach) cons
   return true;
 }
 
-// Receptors near another body, and those bound to it, become known to its rank.
+// Sends receptors near another body, and those bound to it, to the rank of that body.
 PetscErrorCode Adhesion::tell_near() {
   const double reach = reach_of_bodies();
   const int here = flow_.domain.rank();
@@ -256,7 +256,7 @@ PetscErrorCode Adhesion::tell_near() {
   PetscFunctionReturn(0);
 }
 
-// A receptor whose partner has left with its body has no bond.
+// Releases receptors whose partner has left with its body.
 void Adhesion::find_bonds() {
   bonds_.clear();
   for_receptors([&](std::size_t b, std::size_t r, Receptor *receptor) {
@@ -273,7 +273,8 @@ void Adhesion::find_bonds() {
   });
 }
 
-// The forces of bonds on the flow. Both ends of a bond between bodies do this; a wall of the box bears the other end.
+// Sends the forces of bonds to the flow. Each end of a bond between bodies adds its own; at walls of the domain the
+// other end adds none.
 PetscErrorCode Adhesion::send_forces() {
   std::vector<PointForce> forces;
   double most = 0;
@@ -294,7 +295,7 @@ PetscErrorCode Adhesion::send_forces() {
   PetscFunctionReturn(0);
 }
 
-// Bonds of the receptors as they are. Bodies may have gone or got other boxes.
+// Rebuilds the bonds and their forces after bodies may have left or their boxes have been refitted.
 PetscErrorCode Adhesion::renew() {
   PetscFunctionBeginUser;
   PetscCall(look_around());
@@ -323,7 +324,7 @@ PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
   PetscFunctionReturn(0);
 }
 
-// Bodies that have left take the forces of their bonds with them.
+// Removes the forces of the bonds of bodies that have left.
 PetscErrorCode Adhesion::end_step() {
   PetscFunctionBeginUser;
   if (fits_ != boxed_.bodies().fits()) PetscCall(renew());

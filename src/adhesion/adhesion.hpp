@@ -1,8 +1,8 @@
 // Adhesion: bonds between receptors of two bodies, or of a body and a wall, that form and break at random and pull as
 // springs; docs/method.md, section 21.
 //
-// Receptors lie with the bodies in boxes (boxes/receptors.hpp) and are known on the rank that has the body. Ranks tell
-// each other of those alone that are near another body. Both ends of a bond draw the same random numbers.
+// The receptors of a body in a box (boxes/receptors.hpp) are stored with it on the rank that has the body. Ranks
+// exchange only receptors near another body. Both ends of a bond draw the same random numbers.
 #pragma once
 
 #include "adhesion/adhesion_pair.hpp"
@@ -30,7 +30,7 @@ public:
   PetscErrorCode carry(CarriedState *state) override;
   PetscErrorCode start() override;
   PetscErrorCode resume() override;
-  /// That of springs that pull on the fluid, and of rates of formation and rupture.
+  /// The limit due to the stiffness of the springs and to the rates of formation and rupture.
   double largest_step() const override;
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
@@ -40,32 +40,33 @@ public:
   PetscErrorCode add_power(const SynchronisedBodies &look, double *power) override;
 
   const std::vector<AdhesionPair> &pairs() const { return spec_.pairs; }
-  /// Places receptors on bodies that have none. Collective, as all that follow.
+  /// Places receptors on bodies that have none. Collective, like all functions below.
   PetscErrorCode place_on_bodies();
+  /// Sums over all bonds of all ranks.
   PetscErrorCode measure(BondTotals *totals);
-  /// Of the bodies that this rank owns (BodyRange), in their order, of `bodies`.
+  /// Measures the bonds of the bodies that this rank owns (BodyRange of `bodies`), in their order.
   PetscErrorCode measure(int bodies, std::vector<BodyBonds> *owned) const;
-  /// All bonds, on rank 0.
+  /// Gathers all bonds on rank 0.
   PetscErrorCode lines(std::vector<BondLine> *lines) const;
-  /// All that has formed or broken since the last call, on rank 0.
+  /// Gathers on rank 0 the bonds that have formed or broken since the last call.
   PetscErrorCode take_events(std::vector<BondEvent> *events);
 
 private:
-  /// A bond as one of its receptors sees it.
+  /// A bond from the side of one of its receptors.
   struct Bond {
-    std::size_t body, receptor;  ///< positions in the list of bodies and in that of its receptors
-    Real3 pull;                  ///< on the receptor
+    std::size_t body, receptor;  ///< indices in bodies() and in the body's receptors
+    Real3 pull;                  ///< force on the receptor
     double tension;
   };
-  /// A receptor of this or another rank that is near another body.
+  /// A receptor, of any rank, that is near another body.
   struct NearReceptor {
     ReceptorName name;
     int species, rank;
-    bool is_free;  ///< when the step began
+    bool is_free;  ///< at the start of the step
     ReceptorName partner;
     Real3 place;
   };
-  /// A receptor wants to bind to one of another body.
+  /// A receptor's proposal to bind to a receptor of another body.
   struct Proposal {
     ReceptorName from, to;
     int pair, rank;
@@ -73,7 +74,7 @@ private:
     bool accepted;
   };
 
-  /// What a bond does to a body.
+  /// One end of a bond, at a body.
   struct End {
     int body, pair;
     ReceptorName receptor;
@@ -87,7 +88,7 @@ private:
   }
   Receptor *find_own(const ReceptorName &name);
   const NearReceptor *find_near(const ReceptorName &name) const;
-  /// visit(position of the body, position of the receptor, receptor) for those of this rank.
+  /// Calls visit(index of the body, index of the receptor, receptor) for the receptors of this rank.
   template <class Visit>
   void for_receptors(const Visit &visit) {
     for (std::size_t b = 0; b < bodies().size(); ++b) {
@@ -95,7 +96,7 @@ private:
       for (std::size_t r = 0; r < receptors.size(); ++r) visit(b, r, &receptors[r]);
     }
   }
-  /// From a place to another, the shortest way across periodic sides.
+  /// Returns the shortest vector between two positions, across periodic boundaries.
   Real3 way(const Real3 &from, const Real3 &to) const;
   const kernels::BondLaw &law(const Receptor &receptor) const { return spec_.pairs[int(receptor.pair)].law; }
   bool is_on_grid(const AdhesionPair &pair) const { return !pair.to_wall() && !flow_.now.phases[pair.second].boxed; }
@@ -114,9 +115,9 @@ private:
   PetscErrorCode send_forces();
   PetscErrorCode renew();
 
-  /// What random numbers are for.
+  /// The purposes of random numbers; each has its own stream.
   enum class Chance : unsigned { rupture, bond_to_wall, bond_of_bodies };
-  /// In [0, 1), of this step.
+  /// Returns a random number in [0, 1) for this step.
   double random(const ReceptorName &name, Chance chance) const;
   void release(const ReceptorName &name, double tension, Receptor *receptor);
   void bind(const ReceptorName &name, const ReceptorName &partner, int pair, const Real3 &anchor, Receptor *receptor);
@@ -134,17 +135,17 @@ private:
   BoxedBodies &boxed_;
   AdhesionSpec spec_;
   PointForces forces_;
-  std::vector<Bond> bonds_;                                          ///< of receptors of this rank, in their order
-  std::vector<NearReceptor> near_;                                   ///< by their names
-  std::map<int, Surroundings> around_;                               ///< by the numbers of the bodies of this rank
-  long fits_ = -1;                                                   ///< of the boxes that around_ is of
-  double travel_ = 0;                                                ///< cells that surfaces may have moved since
-  std::map<ReceptorName, std::vector<std::pair<int, Real3>>> feet_;  ///< pair, and place on a surface on the grid
-  std::set<ReceptorName> broken_;  ///< of this rank, whose bond has broken in this step
+  std::vector<Bond> bonds_;             ///< bonds of this rank's receptors, in their order
+  std::vector<NearReceptor> near_;      ///< sorted by name
+  std::map<int, Surroundings> around_;  ///< by number of the bodies of this rank
+  long fits_ = -1;                      ///< version of the boxes for which around_ was found
+  double travel_ = 0;                   ///< upper bound of the surfaces' motion since then, in cells
+  std::map<ReceptorName, std::vector<std::pair<int, Real3>>> feet_;  ///< pair, and point on a surface on the grid
+  std::set<ReceptorName> broken_;  ///< receptors of this rank whose bond has broken in this step
   std::vector<BondEvent> events_;
   double most_ = 0;                               ///< largest number of bonds of any body
-  std::int64_t formed_ = 0, lost_ = 0;            ///< bonds that have formed and broken, on all ranks
-  std::int64_t formed_here_ = 0, lost_here_ = 0;  ///< since these were summed
+  std::int64_t formed_ = 0, lost_ = 0;            ///< bonds formed and broken since the start, on all ranks
+  std::int64_t formed_here_ = 0, lost_here_ = 0;  ///< on this rank, not summed yet
 };
 
 }  // namespace eulastic

@@ -1,4 +1,4 @@
-// Which surfaces adhere to which, and how.
+// The pairs of surfaces that adhere, and their parameters.
 #pragma once
 
 #include "bodies/solid_mask.hpp"
@@ -13,14 +13,14 @@
 
 namespace eulastic {
 
-/// Where walls and surfaces are adhesive.
+/// The part of the domain in which walls and surfaces are adhesive.
 struct AdhesiveRegion {
-  Real3 low{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, high{HUGE_VAL, HUGE_VAL, HUGE_VAL};  ///< of a box
-  VoxelSpec file;                          ///< of cells; without a path: all cells
-  std::shared_ptr<const SolidMask> cells;  ///< those that the file fills at least in part, once it has been read
+  Real3 low{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, high{HUGE_VAL, HUGE_VAL, HUGE_VAL};  ///< corners of a box
+  VoxelSpec file;                                                                  ///< cells; without a path: all cells
+  std::shared_ptr<const SolidMask> cells;  ///< the cells that the file fills at least in part, once it has been read
 
   bool is_given() const { return low[0] != -HUGE_VAL || !file.path.empty(); }
-  /// Whether a place, which need not be wrapped around periodic sides, is in the box and in one of the cells.
+  /// Returns whether a position, which need not be wrapped into the domain, is in the box and in one of the cells.
   bool has(const Box &domain, const Real3 &place) const {
     Int3 cell{};
     for (int d = 0; d < domain.dimension(); ++d) {
@@ -36,9 +36,9 @@ struct AdhesiveRegion {
 struct AdhesionPair {
   static constexpr int wall = -1;
   std::string name;           ///< NAME1-NAME2, or NAME-wall
-  int first = 0, second = 0;  ///< species, the second one may be on the grid; `wall`: the walls of the box
+  int first = 0, second = 0;  ///< species; the second may be on the grid, or be `wall`
   kernels::BondLaw law;
-  double density = 0;  ///< receptors per area (2-D: per length) of the bodies of both species
+  double density = 0;  ///< receptors per area (2-D: per length) on both species
   AdhesiveRegion region;
 
   bool to_wall() const { return second == wall; }

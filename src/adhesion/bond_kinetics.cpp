@@ -1,4 +1,4 @@
-// Adhesion: how bonds break and form.
+// Adhesion: rupture and formation of bonds.
 #include "adhesion/adhesion.hpp"
 #include "base/philox.hpp"
 #include "base/send_to_ranks.hpp"
@@ -21,7 +21,7 @@ double Adhesion::random(const ReceptorName &name, Chance chance) const {
                         {static_cast<std::uint32_t>(spec_.seed), 2 + static_cast<std::uint32_t>(chance)}));
 }
 
-// The first of both ends says that a bond has formed or broken.
+// Of the two ends of a bond the first records that it has formed or broken.
 void Adhesion::bind(const ReceptorName &name, const ReceptorName &partner, int pair, const Real3 &anchor,
                     Receptor *receptor) {
   receptor->partner = partner.body;
@@ -44,7 +44,7 @@ void Adhesion::release(const ReceptorName &name, double tension, Receptor *recep
                      flow_.now.time - receptor->since});
 }
 
-// Bonds whose other end has left with its body.
+// Releases the bonds whose other end has left with its body.
 void Adhesion::release_lost() {
   for_receptors([&](std::size_t b, std::size_t r, Receptor *receptor) {
     if (!(receptor->partner > 0)) return;
@@ -64,7 +64,7 @@ void Adhesion::break_bonds(double dt) {
   }
 }
 
-// Where a receptor would bind to a wall of the box.
+// Returns the point of a wall of the domain to which a receptor may bind.
 Foot Adhesion::foot_on_wall(const AdhesionPair &pair, const Real3 &place) const {
   const Domain &domain = flow_.domain;
   double nearest = HUGE_VAL;
@@ -82,7 +82,7 @@ Foot Adhesion::foot_on_wall(const AdhesionPair &pair, const Real3 &place) const 
   return foot;
 }
 
-// Free receptors and what they may bind to that is no other receptor: the nearest of all pairs.
+// Binds free receptors at random to the nearest wall or surface on the grid of all pairs.
 void Adhesion::form_bonds_to_walls(double dt) {
   for_receptors([&](std::size_t b, std::size_t r, Receptor *receptor) {
     const ReceptorName name = name_of(b, r);
@@ -111,8 +111,8 @@ void Adhesion::form_bonds_to_walls(double dt) {
   });
 }
 
-// Of every free receptor of this rank, if chance wants it: to the nearest free one of those after it that another body
-// has within reach. `to`: the ranks of these.
+// Draws for every free receptor of this rank whether it proposes to bind to the nearest free receptor of another body
+// within reach that comes after it in the order of names. `to`: the ranks that get the proposals.
 void Adhesion::find_proposals(double dt, std::vector<Proposal> *proposals, std::vector<int> *to) {
   ReceptorBins bins(flow_.domain, reach_of_bodies());
   for (std::size_t n = 0; n < near_.size(); ++n)
@@ -141,8 +141,8 @@ void Adhesion::find_proposals(double dt, std::vector<Proposal> *proposals, std::
   }
 }
 
-// On the rank of the receptors that others want to bind to: each takes the nearest, unless it is bound now or wants to
-// bind itself (`wanting`).
+// Decides on the proposals to receptors of this rank: each accepts the nearest, unless it has become bound or has
+// itself proposed (`wanting`).
 void Adhesion::judge(const std::set<ReceptorName> &wanting, std::vector<Proposal> *proposals) {
   std::sort(proposals->begin(), proposals->end(), [](const Proposal &one, const Proposal &other) {
     return std::tie(one.to, one.distance, one.from) < std::tie(other.to, other.distance, other.from);

@@ -1,4 +1,4 @@
-// Adhesion: what is known of its bonds.
+// Adhesion: measures of its bonds.
 #include "adhesion/adhesion.hpp"
 #include "adhesion/grid_place.hpp"
 #include "base/body_range.hpp"
@@ -26,7 +26,7 @@ PetscErrorCode Adhesion::measure(BondTotals *totals) {
   PetscCall(sum_events());
   for (const Bond &bond : bonds_) {
     const double partner = bodies()[bond.body].receptors[bond.receptor].partner;
-    sums.add(0, partner == Receptor::wall ? 1 : 0.5);  // both ends of the others count
+    sums.add(0, partner == Receptor::wall ? 1 : 0.5);  // both ends of other bonds are counted
     for (int d = 0; d < 3; ++d) sums.add(1 + d, bond.pull[d]);
   }
   PetscCall(sums.reduce(flow_.domain.comm(), found));
@@ -34,7 +34,7 @@ PetscErrorCode Adhesion::measure(BondTotals *totals) {
   PetscFunctionReturn(0);
 }
 
-// On the rank that owns the cell of the anchor: the body whose surface that is on; 0 if it is not known.
+// Sets the body on whose surface the anchor lies, on the rank that owns its cell; 0 if it is not known.
 void Adhesion::find_body(End *end) const {
   const Domain &domain = flow_.domain;
   const Phase &phase = flow_.now.phases[spec_.pairs[end->pair].second];
@@ -43,7 +43,7 @@ void Adhesion::find_body(End *end) const {
       phase.label ? static_cast<int>(phase.label[0](cell[0] - begin[0], cell[1] - begin[1], cell[2] - begin[2])) : 0;
 }
 
-// The ends of bonds on bodies in boxes, and on surfaces on the grid.
+// Lists the ends of bonds on bodies in boxes and on surfaces on the grid.
 PetscErrorCode Adhesion::find_ends(std::vector<End> *ends) const {
   const Domain &domain = flow_.domain;
   std::vector<End> on_surfaces;

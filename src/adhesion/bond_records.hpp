@@ -1,4 +1,4 @@
-// What is known of bonds beside their forces: names of their ends, events, sums.
+// Records of bonds for outputs: names of their ends, events, sums.
 #pragma once
 
 #include "grid/box.hpp"
@@ -7,7 +7,7 @@
 
 namespace eulastic {
 
-/// A receptor of all: number of the body and index among those of the body; body 0: a wall or a surface on the grid.
+/// A receptor by the number of its body and its index there; body 0: a wall or a surface on the grid.
 struct ReceptorName {
   int body = 0, index = 0;
   bool operator<(const ReceptorName &other) const { return std::tie(body, index) < std::tie(other.body, other.index); }
@@ -19,23 +19,23 @@ struct BondEvent {
   double time;
   bool formed;
   ReceptorName receptor, partner;
-  int pair;             ///< of AdhesionSpec::pairs
-  double tension, age;  ///< of a bond that breaks
+  int pair;             ///< index in AdhesionSpec::pairs
+  double tension, age;  ///< when it broke; 0 for a new bond
 };
 
-/// What the bonds of a body do.
+/// The bonds of a body.
 struct BodyBonds {
   int body = 0;
   int bonds = 0;
-  Real3 force{};       ///< on the body
+  Real3 force{};       ///< sum of the forces on the body
   double tension = 0;  ///< mean of its bonds
   double age = 0;      ///< mean of its bonds
 };
 
-/// Of all bonds.
+/// Sums over all bonds.
 struct BondTotals {
-  double bonds = 0, formed = 0, broken = 0;  ///< now; since the start
-  Real3 force{};                             ///< on the bodies in boxes, all together
+  double bonds = 0, formed = 0, broken = 0;  ///< at present; since the start
+  Real3 force{};                             ///< sum of the forces on all bodies in boxes
 };
 
 /// Both ends of a bond and its tension.

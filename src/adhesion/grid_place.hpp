@@ -1,4 +1,4 @@
-// Places on the grid: the cell of a place, which rank owns it, and the velocity there.
+// A position on the grid: its cell, the rank that owns the cell, and the velocity there.
 #pragma once
 
 #include "field/field.hpp"
@@ -8,8 +8,8 @@
 namespace eulastic {
 
 struct GridPlace {
-  Int3 cell{};   ///< of the domain
-  Int3 shift{};  ///< from indices that are not wrapped around periodic sides to those of this rank's block
+  Int3 cell{};   ///< global index
+  Int3 shift{};  ///< from unwrapped global indices to local ones
 
   GridPlace(const Domain &domain, const Real3 &place) {
     for (int d = 0; d < domain.dimension(); ++d) {
@@ -19,7 +19,8 @@ struct GridPlace {
     }
   }
   int owner(const Domain &domain) const { return domain.owner(cell[0], cell[1], cell[2]); }
-  /// At this place or less than a cell from it, linear between faces; on the rank that owns the cell. Two ghosts.
+  /// Interpolates the velocity linearly between faces, at a position less than a cell away from the one given at
+  /// construction. Call it on the rank that owns the cell; two ghost layers of the velocity.
   Real3 velocity(const Domain &domain, const Field &velocity, const Real3 &place) const {
     Real3 sum{};
     for (int a = 0; a < domain.dimension(); ++a) {

@@ -8,19 +8,19 @@
 namespace eulastic {
 namespace {
 
-// A body as a rank hears of it.
+// A body as it is sent to ranks that own cells of its hull.
 struct Registered {
   BodyBlock body;
   int rank;
 };
 
-// What the rank of a body hears; number 0: of a surface.
+// The reply to the rank of a body; number 0: a surface is near.
 struct Answer {
   int to;
   NearBody near;
 };
 
-// Whether two blocks have cells in common, across periodic sides too.
+// Returns whether two blocks intersect, across periodic boundaries too.
 bool meet(const Domain &domain, const Extent &one, const Extent &other) {
   for (int d = 0; d < domain.dimension(); ++d) {
     const int low = other.begin[d] - one.begin[d];
@@ -74,7 +74,7 @@ PetscErrorCode find_surroundings(const Domain &domain, const std::vector<BodyBlo
     Surroundings &around = (*found)[of.to];
     if (of.near.number == 0)
       around.surface = true;
-    else if (around.bodies.empty() || around.bodies.back().number != of.near.number)  // several ranks say so
+    else if (around.bodies.empty() || around.bodies.back().number != of.near.number)  // several ranks reply the same
       around.bodies.push_back(of.near);
   }
   PetscFunctionReturn(0);

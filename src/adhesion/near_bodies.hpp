@@ -1,4 +1,4 @@
-// Which bodies in boxes are near each other, and near surfaces on the grid: what ranks must know to exchange only the
+// Detection of bodies in boxes that are near each other or near surfaces on the grid, so that ranks exchange only the
 // receptors that may bind.
 #pragma once
 
@@ -11,27 +11,27 @@
 
 namespace eulastic {
 
-/// A body of this rank. Cells are not wrapped around periodic sides.
+/// A body of this rank, with unwrapped ranges of cells.
 struct BodyBlock {
   int number, species;
   Extent box;   ///< its cells
-  Extent hull;  ///< these, and those around that its receptors may bind to or are bound to
+  Extent hull;  ///< its cells and the cells around them within reach of its receptors
 };
 
 struct NearBody {
   int number;
-  int rank;    ///< that has it
+  int rank;    ///< the rank that has it
   Extent box;  ///< its cells
 };
 
 struct Surroundings {
-  std::vector<NearBody> bodies;  ///< by their numbers
-  bool surface = false;          ///< near a surface on the grid
+  std::vector<NearBody> bodies;  ///< sorted by number
+  bool surface = false;          ///< whether a surface on the grid is near
 };
 
-/// Finds what is near every body of this rank: other bodies of species that join(one, other), whose box its hull meets,
-/// or that have the box of this one in theirs; and whether any rank has_surface(species, hull) among its own cells.
-/// Ranks that own cells of a hull hear of the body. Collective.
+/// Finds, for every body of this rank, the other bodies whose box intersects its hull, or whose hull intersects its
+/// box, if join(species, other species); and whether has_surface(species, hull) on any rank that owns cells of the
+/// hull. Each body is sent to the ranks that own cells of its hull. Collective.
 PetscErrorCode find_surroundings(const Domain &domain, const std::vector<BodyBlock> &bodies,
                                  const std::function<bool(int, int)> &join,
                                  const std::function<bool(int, const Extent &)> &has_surface,

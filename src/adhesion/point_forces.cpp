@@ -34,9 +34,9 @@ PetscErrorCode PointForces::set(std::vector<PointForce> forces) {
   PetscFunctionReturn(0);
 }
 
-// visit(offset of an owned face in a component, weight) for the faces of component a around a point, with the weights
-// with which the velocity is read there, so that the power of a force is what it does on the flow. Of a face behind a
-// side the velocity is that of its mirror image with a sign, and so is the force. Faces on walls are theirs.
+// Calls visit(offset of an owned face in the component, weight) for the faces of component a around a point. The
+// weights are those of the interpolation of the velocity, so that the power of a force is its work on the flow. A face
+// behind a boundary stands for its mirror image with the sign of the velocity there; faces on walls get no force.
 template <class Visit>
 void PointForces::for_faces(const PointForce &force, int a, const Visit &visit) const {
   const Domain &domain = flow_.domain;

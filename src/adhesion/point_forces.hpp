@@ -9,23 +9,23 @@
 namespace eulastic {
 
 struct PointForce {
-  int body, receptor;  ///< of the bond
-  int end;             ///< of the bond: 0 the receptor, 1 a surface on the grid
-  Real3 place;         ///< need not be wrapped around periodic sides
+  int body, receptor;  ///< receptor of the bond
+  int end;             ///< end of the bond: 0 the receptor, 1 a surface on the grid
+  Real3 place;         ///< need not be wrapped into the domain
   Real3 force;
 };
 
-/// The point forces that act on the faces of this rank, in an order that does not depend on who has found them.
+/// The point forces that act on the faces of this rank, in an order that does not depend on the ranks they come from.
 class PointForces {
 public:
   explicit PointForces(const Flow &flow) : flow_(flow) {}
-  /// Sends forces to the ranks whose faces they act on, in place of all earlier ones. Collective.
+  /// Sends forces to the ranks whose faces they act on, and replaces all earlier ones. Collective.
   PetscErrorCode set(std::vector<PointForce> forces);
   /// Adds factor times the force per mass to fields, on owned faces.
   void add(const std::vector<WeightedTarget> &targets) const;
   /// Marks rows of owned cells that the forces act on.
   void mark_rows(std::vector<char> *rows) const;
-  /// Adds what they do on the flow. Collective.
+  /// Adds the power of the forces on the flow. Collective.
   PetscErrorCode add_power(double *power) const;
   std::size_t bytes() const { return forces_.size() * sizeof(PointForce); }
 

@@ -1,4 +1,4 @@
-// Receptors in bins at least as wide as bonds reach, so that partners are looked for in the bins around one alone.
+// Receptors in bins at least as wide as the reach of bonds, so that partners are in the neighbouring bins.
 #pragma once
 
 #include "grid/domain.hpp"
@@ -13,12 +13,12 @@ namespace eulastic {
 
 class ReceptorBins {
 public:
-  /// Of the whole domain, whose periodic sides they know.
+  /// Divides the domain into bins at least `reach` wide, with its periodic boundaries.
   ReceptorBins(const Domain &domain, double reach) : domain_(domain) {
     for (int d = 0; d < domain.dimension(); ++d) count_[d] = std::max(1, static_cast<int>(length(d) / reach));
   }
   void add(std::size_t which, const Real3 &place) { bins_[bin_of(place)].push_back(which); }
-  /// visit(which) for those in the bins around a place, each once.
+  /// Calls visit(which) once for each receptor in the bin of a position and its neighbours.
   template <class Visit>
   void for_near(const Real3 &place, const Visit &visit) const;
 
@@ -32,7 +32,7 @@ private:
     }
     return bin;
   }
-  // Bins beside one along d, itself included.
+  // Returns a bin and its neighbours along d.
   std::vector<int> near(int d, int bin) const {
     std::vector<int> found;
     for (int step = -1; step <= 1; ++step) {

@@ -11,8 +11,8 @@ namespace {
 
 bool is_cut(double phi) { return phi > 1e-3 && phi < 1 - 1e-3; }
 
-// Of the plane in a cell, the way from the cell's centre to its point that is nearest to `from`, itself seen from the
-// centre; clamped to the cell. False where the cell is not cut.
+// Finds the vector from a cell's centre to the point of the plane in it that is nearest to `from`, clamped to the cell;
+// `from` is relative to the centre. Returns false if the cell is not cut.
 bool nearest_in_cell(const Box &box, ConstView phi, const Int3 &cell, const Real3 &from, Real3 *nearest) {
   const double here = phi(cell[0], cell[1], cell[2]);
   if (!is_cut(here)) return false;

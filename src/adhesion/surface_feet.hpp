@@ -1,5 +1,4 @@
-// The points of surfaces on the grid, of rigid bodies and of elastic ones that are anchored, that receptors are nearest
-// to.
+// The points nearest to receptors on surfaces on the grid: those of rigid and of anchored elastic bodies.
 #pragma once
 
 #include "field/phase.hpp"
@@ -9,20 +8,20 @@
 
 namespace eulastic {
 
-/// How far such a point may be away, in cells.
+/// Largest distance of such a point, in cells.
 inline constexpr int foot_reach = 2;
 
 /// A point that a receptor may bind to.
 struct Foot {
   Real3 place{};
-  bool found = false;  ///< false: there is none within reach
+  bool found = false;  ///< whether there is one within reach
 };
 
-/// The nearest point of the surface phi = 1/2 of a phase to a place, which need not be wrapped around periodic sides,
-/// on the rank that owns its cell; in each cut cell the surface is a plane. Three ghosts of phi.
+/// Returns the point of a phase's surface phi = 1/2 nearest to a position, which need not be wrapped into the domain.
+/// In each cut cell the surface is a plane. Call it on the rank that owns the cell; three ghost layers of phi.
 Foot find_foot(const Domain &domain, const Phase &phase, const Real3 &place);
 
-/// Whether the surface crosses owned cells that lie in a block, which need not be wrapped.
+/// Returns whether the surface cuts owned cells of a block, which need not be wrapped.
 bool has_surface_in(const Domain &domain, const Phase &phase, const Extent &block);
 
 }  // namespace eulastic

@@ -9,14 +9,14 @@
 namespace eulastic {
 namespace {
 
-// phi and its gradient at a place, linear between centres. Behind walls there is nothing of the body: where it touches
-// one its surface is the wall.
+// phi and its gradient at a position, linear between centres. phi is 0 behind walls, so that the surface of a body that
+// touches a wall lies on the wall.
 struct Level {
   double phi = 0;
   Real3 slope{};
 };
 
-// Whether a cell of the domain lies behind one of its sides.
+// Returns whether a cell lies behind a boundary of the domain.
 bool is_behind_side(const Box &box, const Int3 &cell) {
   bool behind = false;
   for (int d = 0; d < box.dimension(); ++d)
@@ -42,7 +42,7 @@ Level level_at(const Box &box, const Phase &phase, const Real3 &place) {
   return level;
 }
 
-// Linear between faces of the box.
+// Interpolates the velocity linearly between the faces of the box.
 Real3 velocity_at(const Box &box, const Field &velocity, const Real3 &place) {
   const Int3 &begin = box.layout().begin;
   Real3 sum{};
@@ -58,8 +58,8 @@ Real3 velocity_at(const Box &box, const Field &velocity, const Real3 &place) {
   return sum;
 }
 
-// The gradient of phi at the centre of the cell of a place, by differences over two cells: it sees the surface from a
-// cell farther away than `level_at`.
+// Returns the gradient of phi at the centre of the cell of a position, by differences over two cells; it is nonzero one
+// cell farther from the surface than that of `level_at`.
 Real3 wide_slope(const Box &box, const Phase &phase, const Real3 &place) {
   const Layout &layout = box.layout();
   const ConstView phi = phase.fraction[0];
@@ -77,7 +77,7 @@ Real3 wide_slope(const Box &box, const Phase &phase, const Real3 &place) {
   return slope;
 }
 
-// Area of the surface in a cell: |grad phi| integrated over it, by differences of phi over two cells.
+// Returns the area of the surface in a cell: |grad phi| integrated over it, by differences over two cells.
 double area_in_cell(const BodyInBox &body, int i, int j, int k) {
   const ConstView phi = std::as_const(body.phase->fraction)[0];
   const Real3 &h = body.box->spacing();

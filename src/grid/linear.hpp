@@ -1,4 +1,4 @@
-// Linear interpolation of a field at a place.
+// Linear interpolation of a field at a position.
 #pragma once
 
 #include "grid/box.hpp"
@@ -7,13 +7,13 @@
 
 namespace eulastic {
 
-/// The points of a staggered field around a place, 4 in 2-D and 8 in 3-D, and their weights.
+/// The points of a staggered field around a position, 4 in 2-D and 8 in 3-D, and their weights.
 class LinearPoints {
 public:
   struct Point {
-    Int3 at;  ///< index in the domain, not wrapped around periodic sides
+    Int3 at;  ///< unwrapped global index
     double weight;
-    Real3 slope;  ///< derivatives of the weight with the place
+    Real3 slope;  ///< derivatives of the weight with respect to the position
   };
 
   LinearPoints(const Box &box, const Staggering &staggering, const double place[3])
@@ -24,13 +24,13 @@ public:
       part_[d] = at - low;
     }
   }
-  /// Takes points from `low` to `high` along d alone: a place beyond them has the value of the last one.
+  /// Restricts the points along d to low ... high; the interpolation is constant beyond them.
   void keep_between(int d, int low, int high) {
     const double at = std::clamp(first_[d] + part_[d], double(low), double(high));
     first_[d] = std::min(static_cast<int>(std::floor(at)), high - 1);
     part_[d] = at - first_[d];
   }
-  /// visit(point)
+  /// Calls visit(point) for all points.
   template <class Visit>
   void for_all(const Visit &visit) const {
     for (int corner = 0; corner < (dimension_ == 3 ? 8 : 4); ++corner) {
