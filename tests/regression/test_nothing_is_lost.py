@@ -48,6 +48,8 @@ NEW = {
     "a PETSc option nobody reads": ("-output_overwrite -time_end .1 -pressure_solver ksp -pressure_ksp_nonsense 1", 2),
     "a KSP that does not converge": ("-output_overwrite -time_end .1 -pressure_solver ksp -pressure_ksp_max_it 1 "
                                      "-pressure_ksp_rtol 1e-14 -pressure_pc_type none", 1),
+    "an implicit viscous step that does not converge": ("-output_overwrite -time_end .1 -disc_viscosity 2 "
+                                                        "-viscous_tolerance 1e-200", 1),
 }
 
 
