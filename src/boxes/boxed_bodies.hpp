@@ -54,6 +54,7 @@ public:
   PetscErrorCode add_surface_energy(const SynchronisedBodies &look, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
   PetscErrorCode place_markers() { return bodies_.place_markers(); }
+  void keep_surfaces(bool keep) { bodies_.keep_surfaces(keep); }
   void mark_forced_rows(std::vector<char> *rows) const override { bodies_.mark_rows(rows); }
   /// Resets B where the grid does not resolve it. `trace`: the largest tr B of every species. Collective.
   PetscErrorCode reset_unresolved(const std::vector<double> &trace);

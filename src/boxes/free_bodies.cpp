@@ -413,25 +413,39 @@ PetscErrorCode FreeBodies::find_force(Body *body) {
   PetscFunctionReturn(0);
 }
 
-// That of a membrane whose surface has been found; `force`: of any values.
-PetscErrorCode FreeBodies::gather_force(MembraneMechanics &membrane, Body *body, Field &force) {
-  const Box &box = body->box;
+// Sets `force`, of any values, to the force per mass of a membrane whose surface has been found, where stress is felt;
+// `of_step`: with that of a stretch force, and the net force is added up. `samples`: of the surface, or null.
+PetscErrorCode FreeBodies::membrane_force(MembraneMechanics &membrane, const Body &body, const Phase &phase,
+                                          bool of_step, Field &force, std::vector<SurfaceSample> *samples) {
+  const Box &box = body.box;
   const int n = box.cells()[0];
   const double scale = 1 / fluid_.density;
   PetscFunctionBeginUser;
-  for (const Segment &s : body->phase.tensor.stressed.all())
+  for (const Segment &s : phase.tensor.stressed.all())
     for (int a = 0; a < box.dimension(); ++a) std::fill_n(force[a].row(s.j, s.k) + s.i_begin, s.size(), 0.0);
-  PetscCall(membrane.for_force_rows(body->phase, [&](int part, bool bending, int a, int j, int k, double *added) {
-    add_force_row(n, added, 0, force[a].row(j, k), nullptr);
-    if (!bending || !drifts_) return;
-    for (int i = 0; i < n; ++i) added[i] *= scale;
-    net_force_.add_row(box, part, a, added);
-  }));
-  body->film.add_force(body->phase, force);
-  if (is_stretched(body->phase.material)) StretchedBody(box, body->phase).add_force(force[0]);
-  for (const Segment &s : body->phase.tensor.stressed.all())
+  std::vector<double> bending_energy;
+  PetscCall(membrane.for_force_rows(
+      phase,
+      [&](int part, bool bending, int a, int j, int k, double *added) {
+        add_force_row(n, added, 0, force[a].row(j, k), nullptr);
+        if (!of_step || !bending || !drifts_) return;
+        for (int i = 0; i < n; ++i) added[i] *= scale;
+        net_force_.add_row(box, part, a, added);
+      },
+      samples ? &bending_energy : nullptr));
+  if (samples) *samples = membrane.sample(phase, bending_energy);
+  body.film.add_force(phase, force);
+  if (of_step && is_stretched(phase.material)) StretchedBody(box, phase).add_force(force[0]);
+  for (const Segment &s : phase.tensor.stressed.all())
     for (int a = 0; a < box.dimension(); ++a)
       for (int i = s.i_begin; i < s.i_end; ++i) force[a](i, s.j, s.k) *= scale;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeBodies::gather_force(MembraneMechanics &membrane, Body *body, Field &force) {
+  PetscFunctionBeginUser;
+  body->surface.clear();
+  PetscCall(membrane_force(membrane, *body, body->phase, true, force, keeps_surfaces_ ? &body->surface : nullptr));
   body->force.take(force, body->phase.tensor.stressed);
   PetscFunctionReturn(0);
 }

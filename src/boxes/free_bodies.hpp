@@ -30,6 +30,7 @@ public:
     SegmentValues force;                      ///< per mass of the fluid, on the faces forced()
     std::vector<SurfaceMarker> markers = {};  ///< of a membrane, their cells not wrapped around periodic sides
     WallFilm film = {};                       ///< the same: walls in the box
+    std::vector<SurfaceSample> surface = {};  ///< the same, as of `force`, without velocities; may be missing
     ActiveSegments tension_faces = {};        ///< with surface tension: those that feel that or stress
     std::vector<Receptor> receptors = {};     ///< of adhesion
     const ActiveSegments &forced() const {
@@ -96,6 +97,8 @@ public:
   std::vector<Receptor> &receptors(std::size_t body) { return bodies_[body].receptors; }
   /// How often bodies have come, have gone or have got other boxes: the same on all ranks.
   long fits() const noexcept { return fits_; }
+  /// Whether samples of surfaces are kept when forces are found; measure_surfaces() takes longer without them.
+  void keep_surfaces(bool keep) { keeps_surfaces_ = keep; }
   /// Adds energy and power of the surfaces that look() has seen; `samples`: of each membrane. `species`: phases with
   /// their materials. Collective.
   PetscErrorCode measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
@@ -154,6 +157,10 @@ private:
   PetscErrorCode find_walls();
   PetscErrorCode find_force(Body *body);
   PetscErrorCode gather_force(MembraneMechanics &membrane, Body *body, Field &force);
+  PetscErrorCode membrane_force(MembraneMechanics &membrane, const Body &body, const Phase &phase, bool of_step,
+                                Field &force, std::vector<SurfaceSample> *samples);
+  PetscErrorCode measure_membrane(const BodyInBox &seen, const Body &body, ExactSums *sum,
+                                  std::vector<SurfaceSample> *samples);
   PetscErrorCode find_forces();
   PetscErrorCode look_at(std::size_t body, const Step &step, const Field &velocity, BodyInBox *seen);
   PetscErrorCode advance_body(std::size_t body, const Step &step, const Field &velocity, long *unresolved);
@@ -171,7 +178,7 @@ private:
   BoxExchange exchange_, fractions_;  ///< of velocities and forces, of single fields
   bool fractions_are_connected_ = false;
   bool extends_;
-  bool drifts_ = false;
+  bool drifts_ = false, keeps_surfaces_ = false;
   Field walls_;  ///< of the grid, solid fraction of rigid bodies that stay; none: null
   NetForce net_force_;
   Real3 mean_force_{};

@@ -71,6 +71,47 @@ PetscErrorCode FreeBodies::look(const Step &step, const Field &velocity, std::ve
   PetscFunctionReturn(0);
 }
 
+// Uses the force and the samples that were found with it. They are found again for a copy that has moved, and where the
+// force contains that of a stretch force.
+PetscErrorCode FreeBodies::measure_membrane(const BodyInBox &seen, const Body &body, ExactSums *sum,
+                                            std::vector<SurfaceSample> *samples) {
+  PetscFunctionBeginUser;
+  const Box &box = body.box;
+  const Phase &phase = *seen.phase;
+  const int n = box.cells()[0], dimension = box.dimension();
+  const bool kept = &phase == &body.phase && !body.surface.empty() && !is_stretched(phase.material);
+  SegmentValues found;
+  if (kept) {
+    *samples = body.surface;
+  } else {
+    Field all = scratch(box, MembraneMechanics::work_fields + dimension), force = all.part(0, dimension),
+          work = all.part(dimension, MembraneMechanics::work_fields);
+    MembraneMechanics membrane({&box, sides_, nullptr});
+    PetscCall(membrane.find(phase, work));
+    PetscCall(membrane_force(membrane, body, phase, false, force, samples));
+    found.take(force, phase.tensor.stressed);
+  }
+  EventScope scope(Event::sums);
+  const SegmentValues &force = kept ? body.force : found;
+  const ActiveSegments &forced = phase.tensor.stressed;
+  std::vector<double> power(n);
+  for (const Segment &row : box.rows())
+    for (int a = 0; a < dimension && !forced.idle(row.j, row.k); ++a) {
+      const double *v = (*seen.velocity)[a].row(row.j, row.k);
+      std::fill(power.begin(), power.end(), 0);
+      for (const Segment &s : forced.row(row.j, row.k)) {
+        const double *f = force.of(a, &s - forced.all().data());
+        for (int i = s.i_begin; i < std::min(s.i_end, n); ++i) power[i] = -v[i] * (fluid_.density * f[i - s.i_begin]);
+      }
+      sum->add_row(MembraneMechanics::power, power.data(), n, box.layout().begin[0]);
+    }
+  body.film.add_energy(phase, MembraneMechanics::stored, sum);
+  MembraneMechanics::add_stored_energy(*samples, box.cell_volume(), sum);
+  for (SurfaceSample &sample : *samples) sample.label = seen.number;
+  MembraneMechanics::set_velocities(*seen.velocity, samples);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode FreeBodies::measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
                                             SurfaceEnergy *measured, std::vector<std::vector<SurfaceSample>> *samples) {
   // Of all membranes, then of each species with surface tension.
@@ -81,13 +122,9 @@ PetscErrorCode FreeBodies::measure_surfaces(const std::vector<BodyInBox> &seen, 
   samples->assign(seen.size(), {});
   for (std::size_t b = 0; b < seen.size(); ++b) {
     const BodyInBox &body = seen[b];
-    Field work = scratch(*body.box, std::max(MembraneMechanics::work_fields, CapillaryForce::work_fields));
-    if (body.phase->material.is_membrane()) {
-      MembraneMechanics membrane({body.box, sides_, nullptr});
-      PetscCall(membrane.find(*body.phase, work));
-      PetscCall(membrane.measure(*body.phase, *body.velocity, bodies_[b].film, body.number, &sum, &(*samples)[b]));
-    }
+    if (body.phase->material.is_membrane()) PetscCall(measure_membrane(body, bodies_[b], &sum.front(), &(*samples)[b]));
     if (body.phase->material.surface_tension > 0) {
+      Field work = scratch(*body.box, CapillaryForce::work_fields);
       CapillaryForce capillary(*body.box, nullptr);
       PetscCall(capillary.find(*body.phase, work));
       capillary.measure(*body.velocity, of_membranes + of_species * body.species, &sum);

@@ -359,7 +359,6 @@ namespace {
 struct Energies {
   double shear, area;
   double rest, stretch;  ///< members `rest` and `stretch` of SurfaceSample
-  double total() const { return shear + area; }
 };
 template <int Dim>
 Energies energies_at(const Phase &phase, const SurfaceCells::Cell &cell) {
@@ -378,23 +377,36 @@ double smoothed_delta(const Box &box, ConstView psi, std::ptrdiff_t at) {
   return std::sqrt((g[0] * g[0] + g[1] * g[1]) + g[2] * g[2]);
 }
 
-Real3 centre_velocity(const Field &velocity, std::ptrdiff_t at) {
-  Real3 v{};
-  for (int d = 0; d < velocity.count(); ++d) {
-    const double *face = velocity[d].origin + at;
-    v[d] = 0.5 * (face[0] + face[velocity[d].stride(d)]);
-  }
-  return v;
-}
-
 }  // namespace
 
-PetscErrorCode MembraneMechanics::measure(const Phase &phase, const Field &velocity, const WallFilm &film, int label,
+std::vector<SurfaceSample> MembraneMechanics::sample(const Phase &phase, const std::vector<double> &bending_energy,
+                                                     const std::vector<int> &labels) const {
+  const Box &box = *place_.box;
+  const double volume = box.cell_volume();
+  std::vector<SurfaceSample> samples;
+  samples.reserve(surface_.all().size());
+  for (std::size_t c = 0; c < surface_.all().size(); ++c) {
+    const SurfaceCells::Cell &cell = surface_.all()[c];
+    if (!cell.owned) continue;
+    const Energies energies = box.dimension() == 2 ? energies_at<2>(phase, cell) : energies_at<3>(phase, cell);
+    const double bending = bending_energy[c] > 0 ? bending_energy[c] * smoothed_delta(box, smooth(), cell.at) : 0;
+    samples.push_back({labels.empty() ? 0 : labels[c],
+                       cell.place,
+                       cell.delta,
+                       energies.rest,
+                       energies.stretch,
+                       {},
+                       energies.shear * volume,
+                       energies.area * volume,
+                       bending * volume});
+  }
+  return samples;
+}
+
+PetscErrorCode MembraneMechanics::measure(const Phase &phase, const Field &velocity, const WallFilm &film,
                                           std::vector<ExactSums> *sum, std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
-  const Box &box = *place_.box;
-  const int dim = box.dimension(), n = box.cells()[0], first = box.layout().begin[0];
-  const double volume = box.cell_volume();
+  const int n = place_.box->cells()[0], first = place_.box->layout().begin[0];
   std::vector<double> bending;
   PetscCall(for_force_rows(
       phase,
@@ -405,25 +417,30 @@ PetscErrorCode MembraneMechanics::measure(const Phase &phase, const Field &veloc
       },
       &bending));
   EventScope scope(Event::sums);
-  film.add_energy(phase, velocity, power, stored, &sum->front());
-  for (std::size_t c = 0; c < bending.size(); ++c)
-    if (bending[c] > 0) bending[c] *= smoothed_delta(box, smooth(), surface_.all()[c].at);
+  film.add_power(phase, velocity, power, &sum->front());
+  film.add_energy(phase, stored, &sum->front());
   std::vector<int> labels;
-  if (samples && label > 0)
-    labels.assign(bending.size(), label);
-  else if (samples && phase.label)
-    PetscCall(surface_.find_labels(phase, surface_fields_, &labels));
-  for (std::size_t c = 0; c < bending.size(); ++c) {
-    const SurfaceCells::Cell &cell = surface_.all()[c];
-    if (!cell.owned) continue;
-    const Energies energies = dim == 2 ? energies_at<2>(phase, cell) : energies_at<3>(phase, cell);
-    sum->front().add(stored, energies.total() + bending[c]);
-    if (!labels.empty())
-      samples->push_back({labels[c], cell.place, cell.delta, energies.rest, energies.stretch,
-                          centre_velocity(velocity, cell.at), energies.shear * volume, energies.area * volume,
-                          bending[c] * volume});
-  }
+  if (samples && phase.label) PetscCall(surface_.find_labels(phase, surface_fields_, &labels));
+  std::vector<SurfaceSample> found = sample(phase, bending, labels);
+  add_stored_energy(found, place_.box->cell_volume(), &sum->front());
+  if (labels.empty()) PetscFunctionReturn(0);
+  set_velocities(velocity, &found);
+  samples->insert(samples->end(), found.begin(), found.end());
   PetscFunctionReturn(0);
+}
+
+void MembraneMechanics::set_velocities(const Field &velocity, std::vector<SurfaceSample> *samples) {
+  for (SurfaceSample &sample : *samples) {
+    const Int3 &c = sample.place;
+    for (int d = 0; d < velocity.count(); ++d) {
+      const double *face = &velocity[d](c[0], c[1], c[2]);
+      sample.velocity[d] = 0.5 * (face[0] + face[velocity[d].stride(d)]);
+    }
+  }
+}
+
+void MembraneMechanics::add_stored_energy(const std::vector<SurfaceSample> &samples, double volume, ExactSums *sum) {
+  for (const SurfaceSample &s : samples) sum->add(stored, (s.shear_energy + s.area_energy + s.bending_energy) / volume);
 }
 
 }  // namespace eulastic

@@ -49,11 +49,18 @@ public:
   /// Calls `use` for the forces of stress and bending. `bending_energy`: energy per area at each cell of surface().
   PetscErrorCode for_force_rows(const Phase &phase, const ForceRow &use, std::vector<double> *bending_energy = nullptr);
   enum Sum { power, stored, sums };
+  /// Returns samples of all owned surface cells, without velocities. `bending_energy`: from for_force_rows(); `labels`:
+  /// of the bodies at the cells of surface(), or empty.
+  std::vector<SurfaceSample> sample(const Phase &phase, const std::vector<double> &bending_energy,
+                                    const std::vector<int> &labels = {}) const;
   /// Adds the power that the flow supplies to the phase and the stored energy, both divided by the cell volume, to the
   /// sums of each row part. Adds samples of all owned surface cells to `samples`, unless it is null, if bodies have
-  /// labels or `label` is that of the only body.
-  PetscErrorCode measure(const Phase &phase, const Field &velocity, const WallFilm &film, int label,
-                         std::vector<ExactSums> *sum, std::vector<SurfaceSample> *samples);
+  /// labels.
+  PetscErrorCode measure(const Phase &phase, const Field &velocity, const WallFilm &film, std::vector<ExactSums> *sum,
+                         std::vector<SurfaceSample> *samples);
+  static void set_velocities(const Field &velocity, std::vector<SurfaceSample> *samples);
+  /// Adds the energy of these samples, divided by the volume of a cell, to the sum `stored`.
+  static void add_stored_energy(const std::vector<SurfaceSample> &samples, double volume, ExactSums *sum);
 
 private:
   /// Computes delta tau at centres, from the cells of surface_.

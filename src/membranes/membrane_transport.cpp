@@ -229,7 +229,7 @@ PetscErrorCode MembraneTransport::add_surface_energy(const SynchronisedBodies &b
     WorkSpace::Lease work;
     PetscCall(find(phase, &work));
     std::vector<ExactSums> sum(row_parts(flow_.domain), ExactSums(MembraneMechanics::sums));
-    PetscCall(membrane_.measure(phase, flow_.now.velocity, film_, 0, &sum, samples));
+    PetscCall(membrane_.measure(phase, flow_.now.velocity, film_, &sum, samples));
     double total[MembraneMechanics::sums];
     PetscCall(reduce_parts(flow_.domain.comm(), sum, total));
     measured->power += total[MembraneMechanics::power] * volume;

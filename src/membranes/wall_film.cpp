@@ -85,12 +85,16 @@ void WallFilm::add_force(const Phase &phase, Field &force) const {
     if (phi[face.near] > 0) force[face.component].origin[face.at] += force_on(face, pressure, phi);
 }
 
-void WallFilm::add_energy(const Phase &phase, const Field &velocity, int power, int stored, ExactSums *sums) const {
+void WallFilm::add_power(const Phase &phase, const Field &velocity, int which, ExactSums *sums) const {
   const double *phi = phase.fraction[0].origin, pressure = pressure_of(phase);
   for (const Face &face : faces_)
-    if (phi[face.near] > 0) sums->add(power, -velocity[face.component].origin[face.at] * force_on(face, pressure, phi));
+    if (phi[face.near] > 0) sums->add(which, -velocity[face.component].origin[face.at] * force_on(face, pressure, phi));
+}
+
+void WallFilm::add_energy(const Phase &phase, int which, ExactSums *sums) const {
+  const double *phi = phase.fraction[0].origin, pressure = pressure_of(phase);
   for (const Cell &cell : cells_)
-    if (phi[cell.at] > 0) sums->add(stored, 0.5 * pressure * cell.nearness * (phi[cell.at] * phi[cell.at]));
+    if (phi[cell.at] > 0) sums->add(which, 0.5 * pressure * cell.nearness * (phi[cell.at] * phi[cell.at]));
 }
 
 }  // namespace eulastic

@@ -17,8 +17,10 @@ public:
   void find(const Box &box, const BoundaryConditions &sides, const std::vector<ConstView> &rigid, Field &scratch);
   /// Adds the force of the walls on the bodies of a membrane's phase. Reads one ghost of phi.
   void add_force(const Phase &phase, Field &force) const;
-  /// Adds, divided by the cell volume, minus the power of the force and the energy stored in it.
-  void add_energy(const Phase &phase, const Field &velocity, int power, int stored, ExactSums *sums) const;
+  /// Adds minus the power of the force, divided by the cell volume, to sum `which`.
+  void add_power(const Phase &phase, const Field &velocity, int which, ExactSums *sums) const;
+  /// Adds the energy stored in the film, divided by the cell volume, to sum `which`.
+  void add_energy(const Phase &phase, int which, ExactSums *sums) const;
 
 private:
   struct Face {

@@ -46,6 +46,8 @@ public:
   /// Where phases are half a step behind, a row of series.csv waits, except for the last one.
   PetscErrorCode write_due(bool last);
   bool row_waits() const { return waits_; }
+  /// Before a step of length dt: what a row during the step or at its end needs of the forces of surfaces is kept.
+  void prepare_step(double dt);
   /// After a restart: the row of the checkpoint waits again, if it did.
   PetscErrorCode resume_row();
   /// In the middle of the next step, of length dt: interpolates the waiting row between this middle and the last; the

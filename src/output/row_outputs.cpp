@@ -1,6 +1,7 @@
 // Outputs: rows of series.csv and bodies.h5.
 #include "adhesion/adhesion.hpp"
 #include "base/events.hpp"
+#include "boxes/boxed_bodies.hpp"
 #include "diagnostics/energy_budget.hpp"
 #include "output/guards.hpp"
 #include "output/outputs.hpp"
@@ -215,6 +216,10 @@ PetscErrorCode Outputs::resume_row() {
   if (!series_due_.at(time) || !solver_->phases_lag()) PetscFunctionReturn(0);
   PetscCall(await_row(std::exchange(series_due_.last_time, time)));
   PetscFunctionReturn(0);
+}
+
+void Outputs::prepare_step(double dt) {
+  solver_->boxed().keep_surfaces(waits_ || series_due_.at(solver_->state().time + dt));
 }
 
 PetscErrorCode Outputs::record_middle(double dt) {

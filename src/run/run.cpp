@@ -194,6 +194,7 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
         PetscFunctionReturn(0);
       };
     };
+    run->outputs.prepare_step(dt);
     {
       StageScope stage(Stage::step);
       PetscCall(control->reset_unresolved(&solver, &warning));
