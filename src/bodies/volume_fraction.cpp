@@ -42,7 +42,7 @@ double half_space_fraction(double level, const Real3 &slopes) noexcept {
 
 PlacedBody::PlacedBody(const Surface &surface, const DomainShape &grid, const BodyPlace &place)
     : surface_(surface),
-      dimension_(grid.cells[2] == 1 ? 2 : 3),
+      dimension_(grid.dimension()),
       cells_(grid.cells),
       spacing_{},
       middle_{},

@@ -16,8 +16,7 @@
 namespace eulastic {
 namespace {
 
-int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
-int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(dimension_of(config)).size()); }
+int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(config.grid.dimension()).size()); }
 
 /// Doubles per cell of a phase: fraction, label and deformation; with the staggered method a second copy at the time of
 /// the output.
@@ -28,7 +27,7 @@ double phase_fields(const Config &config, bool carries_tensor) {
 /// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity,
 /// of bodies without a surface that exerts forces in the cells alone that FreeBodies::look() keeps.
 double boxed_values(const Config &config) {
-  const int dimension = dimension_of(config);
+  const int dimension = config.grid.dimension();
   double sum = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     if (!config.lies_in_boxes(s)) continue;
@@ -57,7 +56,7 @@ double boxed_values(const Config &config) {
 /// add; the phases.
 double fields(const Config &config) {
   const Method &method = config.method;
-  const int dimension = dimension_of(config);
+  const int dimension = config.grid.dimension();
   bool tension = false, membranes = false;  // on the grid
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     if (config.lies_in_boxes(s)) continue;
@@ -110,7 +109,7 @@ double fields(const Config &config) {
 double ghosted_cells(const Config &config, const Int3 &parts) {
   const Int3 box = Domain::largest_box(config.grid, parts);
   double cells = 1;
-  for (int d = 0; d < 3; ++d) cells *= box[d] + (d < dimension_of(config) ? 2 * config.grid.ghosts : 0);
+  for (int d = 0; d < 3; ++d) cells *= box[d] + (d < config.grid.dimension() ? 2 * config.grid.ghosts : 0);
   return cells;
 }
 
