@@ -103,6 +103,31 @@ TEST(SceneRefusals, InflowSidesThatDoNotCancel) {
     EXPECT_EQ(parse_line(scene + " " + in + fine).error, "") << fine;
 }
 
+// Sizes that do not give a body, and placements of what is one body.
+TEST(SceneRefusals, ShapesAndPlacements) {
+  const std::string tube = "-a_shape constricted_tube -a_axis x -a_radius .2 -a_throat_length .4 -a_throat_radius ";
+  expect_refusals(
+      {{"-a_shape sphere -a_radius 0", {"-a_radius: ", "accepted: "}},
+       {tube + ".2", {"-a_throat_radius: 0.2 is no narrower", "accepted: less than 0.2, -a_radius"}},
+       {tube + ".1 -a_throat_length 0", {"-a_throat_length: ", "accepted: "}},
+       {tube + ".1 -a_axis z -grid_cells 8,8,1", {"-a_axis: z in 2-D", "accepted: x, y"}},
+       {tube + ".1 -a_placement lattice", {"-a_placement: ", "accepted: one"}},
+       {"-a_shape slab -a_interval 1,1", {"-a_interval: ", "accepted: low,high with low < high"}},
+       {"-a_shape slab -a_interval 1,2", {"-a_interval: the slab is outside the box", "accepted: a part of 0,1"}},
+       {"-a_shape sphere -a_radius .2 -a_placement lattice -a_count 1,1,0", {"-a_count: "}},
+       {"-a_shape sphere -a_radius .2 -a_placement lattice -a_count 1,1,2 -grid_cells 8,8,1",
+        {"-a_count: 2 along z in 2-D", "accepted: 1 along z"}},
+       {"-a_shape sphere -a_radius .2 -a_centre .5,.5,2", {"-a_centre: z = 2 ", "accepted: within 0 ... 1"}},
+       {"-a_shape sphere -a_radius 2", {"-a_shape: the body is 4 long in x", "accepted: at most 1"}},
+       {"-a_shape sphere -a_radius .2 -a_centre .5,.1,.5 -boundary_y wall",
+        {"-a_centre: the body reaches into the wall", "accepted: within 0 ... 1"}},
+       {"-a_shape sphere -a_radius .2 -a_body_force 0,0,1 -grid_cells 8,8,1",
+        {"-a_body_force: 1 along z in 2-D", "accepted: 0 along z"}},
+       {"-a_shape sphere -a_radius .2 -a_orientation 9,0,0 -grid_cells 8,8,1",
+        {"-a_orientation: ", "accepted: 0,0,angle"}}},
+      "-time_end 1 -grid_cells 8,8,8 -species a -a_shear_modulus 1 ");
+}
+
 // What would turn into another shape, or cannot go where it is told.
 TEST(SceneRefusals, RigidBodiesThatMove) {
   expect_refusals(
