@@ -129,13 +129,12 @@ private:
       spec.number = static_cast<long>(std::ceil(more * double(count) * volume / region_.volume()));
       if (!seed_bodies({spec}, 0, block, {}, {}, &places, false).empty()) continue;
       sites.clear();
-      for (int k = 0; k < copies[2]; ++k)
-        for (int j = 0; j < copies[1]; ++j)
-          for (int i = 0; i < copies[0]; ++i)
-            for (BodyPlace place : places) {
-              for (int d = 0; d < dimension_; ++d) place.centre[d] += Int3{i, j, k}[d] * block.length[d];
-              if (fits(place)) sites.push_back(place);
-            }
+      for_points({{}, copies}, [&](int i, int j, int k) {
+        for (BodyPlace place : places) {
+          for (int d = 0; d < dimension_; ++d) place.centre[d] += Int3{i, j, k}[d] * block.length[d];
+          if (fits(place)) sites.push_back(place);
+        }
+      });
       if (sites.size() >= count) return sites;
     }
     return {};

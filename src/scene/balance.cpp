@@ -61,25 +61,21 @@ private:
   void add(const Phase &phase) {
     const double factor = phase_work(phase.material, false);
     if (factor == 0) return;
-    const Int3 &n = domain_.cells();
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) {
-        const OccupiedRows::Span span = phase.rows.span(j, k);
-        cost(j, k) += factor * std::max(0, std::min(span.end, n[0]) - std::max(span.begin, 0));
-      }
+    for (const Segment &row : domain_.rows()) {
+      const OccupiedRows::Span span = phase.rows.span(row.j, row.k);
+      cost(row.j, row.k) += factor * std::max(0, std::min(span.end, row.i_end) - std::max(span.begin, 0));
+    }
   }
 
   // Over the planes of each unit along d.
   PetscErrorCode sum_planes(int d, std::vector<double> *sums) {
     PetscFunctionBeginUser;
-    const Int3 &n = domain_.cells();
     const int units = domain_.domain_cells()[d] / unit_[d];  // the last one may have more cells
     sums->assign(units, 0);
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) {
-        const int plane = domain_.layout().begin[d] + (d == 1 ? j : k);
-        (*sums)[std::min(plane / unit_[d], units - 1)] += cost(j, k);
-      }
+    for (const Segment &row : domain_.rows()) {
+      const int plane = domain_.layout().begin[d] + (d == 1 ? row.j : row.k);
+      (*sums)[std::min(plane / unit_[d], units - 1)] += cost(row.j, row.k);
+    }
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums->data(), units, MPI_DOUBLE, MPI_SUM, domain_.comm()));
     PetscFunctionReturn(0);
   }
@@ -105,14 +101,13 @@ private:
   // The heaviest box at every position along y and z, if ranks had the cells of split_.
   PetscErrorCode heaviest_boxes(std::array<std::vector<double>, 3> *most) {
     PetscFunctionBeginUser;
-    const Int3 &begin = domain_.layout().begin, &n = domain_.cells();
+    const Int3 &begin = domain_.layout().begin;
     const int x = split_.position_of(domain_.rank())[0];
     std::vector<double> boxes(domain_.ranks(), 0);
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) {
-        const int y = split_.position_along(1, begin[1] + j), z = split_.position_along(2, begin[2] + k);
-        boxes[split_.rank_at({x, y, z})] += cost(j, k);
-      }
+    for (const Segment &row : domain_.rows()) {
+      const int y = split_.position_along(1, begin[1] + row.j), z = split_.position_along(2, begin[2] + row.k);
+      boxes[split_.rank_at({x, y, z})] += cost(row.j, row.k);
+    }
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, boxes.data(), domain_.ranks(), MPI_DOUBLE, MPI_SUM, domain_.comm()));
     for (int d = 1; d < 3; ++d) {
       (*most)[d].assign(domain_.processors(d), 0);
