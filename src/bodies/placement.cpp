@@ -55,14 +55,18 @@ Refusal refuse(const SpeciesSpec &spec, const Surface &surface, const DomainShap
     return {"orientation", "a body is rotated about z only in 2-D; accepted: 0,0,angle"};
   const bool may_cross = spec.shape == Shape::cylinder || is_anchored(spec.shape);
   if (may_cross && place.orientation != Real3{})
-    return {"orientation",
-            "cylinders, slabs and tubes cannot be rotated; accepted: 0,0,0 with -" + spec.name + "_axis x, y or z"};
+    return {"orientation", "cylinders, slabs and tubes cannot be rotated; accepted: 0,0,0, with their direction as -" +
+                               spec.name + "_axis"};
   if (is_tube(spec.shape)) return refuse_lumen(spec, grid, place.centre);
+  const char *position = spec.shape == Shape::slab              ? "interval"
+                         : spec.placement == Placement::lattice ? "count"
+                                                                : "centre";
   for (int d = 0; d < dimension; ++d) {
     const double centre = place.centre[d], length = grid.length[d], bound = surface.bounding_radius();
-    const std::string direction(1, "xyz"[d]), box = "; accepted: within 0 ... " + text(length);
+    const std::string direction(1, "xyz"[d]);
+    const auto within = [&] { return "; accepted: within 0 ... " + text(length); };
     if (!(centre >= 0 && centre <= length))
-      return {"centre", direction + " = " + text(centre) + " is outside the box" + box};
+      return {position, direction + " = " + text(centre) + " is outside the box" + within()};
     if (centre >= bound && centre + bound <= length) continue;
     const double extent = surface.support(rotation(place.orientation)[d]), slack = 1e-5 * length;
     if (std::isfinite(extent) && 2 * extent > length + slack)
@@ -70,8 +74,8 @@ Refusal refuse(const SpeciesSpec &spec, const Surface &surface, const DomainShap
                            text(length) + ", the length of the box"};
     if (grid.boundary[d] == Boundary::periodic || may_cross) continue;
     if (centre - extent < -slack || centre + extent > length + slack)
-      return {"centre", "the body reaches into the wall: " + direction + " = " + text(centre - extent) + " ... " +
-                            text(centre + extent) + box};
+      return {position, "the body reaches into the wall: " + direction + " = " + text(centre - extent) + " ... " +
+                            text(centre + extent) + within()};
   }
   return {};
 }

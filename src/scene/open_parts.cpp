@@ -180,7 +180,7 @@ std::string check_slabs(const Config &config) {
 // Inflow must be able to leave.
 std::string check_way(const Config &config, const std::array<std::array<bool, 2>, 3> &closed) {
   std::string inlet, outlet, covered;
-  bool way_out = false;
+  bool comes_in = false, way_out = false;
   for_crossed_sides(config, [&](int d, int high) {
     const std::string side = side_name(d, high);
     if (config.sides[d][high].kind != BoundaryKind::inflow) {
@@ -188,6 +188,7 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
       outlet = side;
       return;
     }
+    comes_in = true;
     if (closed[d][high] && inlet.empty()) inlet = side;
     if (config.open_parts[d][high].share != 1 && !config.openings[d][high].velocity.empty() && covered.empty())
       covered = side;
@@ -200,8 +201,6 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
            "_velocity: rigid bodies cover a part of this boundary, and no boundary is open, so that the inflow rates "
            "must balance; accepted: -boundary_" +
            covered + "_flow_rate";
-  bool comes_in = false;
-  for_crossed_sides(config, [&](int d, int high) { comes_in |= config.sides[d][high].kind == BoundaryKind::inflow; });
   if (comes_in && !outlet.empty() && !way_out)
     return "-boundary_" + outlet +
            ": rigid bodies cover all boundaries through which the inflow could leave; accepted: an open boundary";
