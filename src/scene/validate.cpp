@@ -237,22 +237,6 @@ bool is_known_everywhere(const SpeciesSpec &spec) {
   return spec.bears_load() || spec.material().anchored || spec.shape == Shape::cylinder;
 }
 
-std::string place_species(std::size_t which, const SolidBodies &solids, const KeptBodies &kept, Config *config) {
-  const SpeciesSpec &spec = config->species[which];
-  Places places;
-  if (is_random(spec)) {
-    std::vector<BodyPlace> all;
-    if (std::string wrong = seed_bodies(config->species, which, config->grid, solids, config->places, &all);
-        !wrong.empty())
-      return wrong;
-    places = Places(all);
-  } else if (const std::string wrong = place_bodies(spec, config->grid, &places, kept); !wrong.empty()) {
-    return wrong;
-  }
-  config->places.push_back(std::move(places));
-  return {};
-}
-
 // Bodies at random keep clear of all that come before them, which every rank knows until they are placed; then it keeps
 // its share.
 std::string place_all(const SolidBodies &solids, Config *config) {
@@ -263,8 +247,14 @@ std::string place_all(const SolidBodies &solids, Config *config) {
   config->places.clear();
   for (std::size_t s = 0; s < species.size(); ++s) {
     const bool all = is_known_everywhere(species[s]) || std::any_of(species.begin() + s, species.end(), is_random);
-    const KeptBodies kept = all ? KeptBodies{} : KeptBodies{rank, ranks};
-    if (std::string wrong = place_species(s, solids, kept, config); !wrong.empty()) return wrong;
+    std::vector<BodyPlace> seeded;
+    Places places;
+    const std::string wrong =
+        is_random(species[s])
+            ? seed_bodies(species, s, config->grid, solids, config->places, &seeded)
+            : place_bodies(species[s], config->grid, &places, all ? KeptBodies{} : KeptBodies{rank, ranks});
+    if (!wrong.empty()) return wrong;
+    config->places.push_back(is_random(species[s]) ? Places(seeded) : std::move(places));
   }
   for (std::size_t s = 0; s < species.size(); ++s)
     if (!is_known_everywhere(species[s])) config->places[s].share_among(rank, ranks);
