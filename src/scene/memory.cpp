@@ -102,7 +102,7 @@ double fields(const Config &config) {
   if (scene.membranes) sum += dimension;  // their force
   if (method.interface == InterfaceScheme::weno5) sum += 1;
   if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
-  if (contrast.exists() && !scene.rigid && method.viscous == ViscousScheme::rkl)  // ImplicitViscosity
+  if (method.implicit_viscosity(contrast.exists(), scene.rigid))  // ImplicitViscosity
     sum += 5 * dimension + 3 + (dimension == 2 ? 1 : 0.4);
   if (Scheme::extrapolates_pressure(method, contrast, travels)) sum += 1;  // pressure before
   return sum;
