@@ -12,11 +12,6 @@ namespace eulastic {
 
 class BodyOwners {
 public:
-  BodyOwners() = default;
-  BodyOwners(const BodyOwners &) = delete;
-  BodyOwners &operator=(const BodyOwners &) = delete;
-  ~BodyOwners();
-
   /// Sets up the communication for `bodies` bodies; `here`: those with cells on this rank, ascending. Call once.
   /// Collective.
   PetscErrorCode connect(MPI_Comm comm, int bodies, std::vector<int> here);
@@ -25,9 +20,8 @@ public:
   const std::vector<int> &here() const { return here_; }
   /// Returns the position of a body in here(), or -1.
   int slot(int body) const {
-    if (body < 0) return -1;
-    for (std::size_t n = first_slot(body);; n = (n + 1) & (slots_.size() - 1))
-      if (slots_[n] < 0 || here_[static_cast<std::size_t>(slots_[n])] == body) return slots_[n];
+    const auto found = std::lower_bound(here_.begin(), here_.end(), body);
+    return found != here_.end() && *found == body ? static_cast<int>(found - here_.begin()) : -1;
   }
 
   /// Reduces `width` values of every body in here() into those of its owner; `op`: MPI_SUM, or MPI_MAX with width 1.
@@ -37,13 +31,9 @@ public:
   PetscErrorCode bring(int width, const std::vector<double> &owned, std::vector<double> *here) const;
 
 private:
-  std::size_t first_slot(int body) const { return static_cast<unsigned>(body) * 0x9e3779b97f4a7c15U >> shift_; }
-
   BodyRange owned_;
   std::vector<int> here_;
-  std::vector<int> slots_ = {-1, -1};  ///< hash table of positions in here_, at most half full; -1: empty
-  int shift_ = 63;                     ///< right shift of the 64-bit hash to the size of the table
-  PetscSF sf_ = nullptr;
+  SfHandle sf_;
 };
 
 /// Gathers the first `limit` of `bodies` values from their owners to rank 0, in the order of the bodies and at most

@@ -64,9 +64,7 @@ struct RunPlaces {
 };
 /// Returns positions relative to the nearest periodic image of the reference cell.
 RunPlaces places_of(const Box &box, const Run &run, const Int3 &reference);
-/// Returns the first three sums only.
-RunSums sum_positions(const Box &box, const Run &run, const RunPlaces &places);
-/// Returns all sums; needs one ghost layer of velocity and B.
-RunSums sum_all(const Box &box, const Run &run, const RunPlaces &places, const Field &velocity);
+/// Sets all sums, for which velocity and B need one ghost layer; without a velocity (null) the first three only.
+void sum_run(const Box &box, const Run &run, const RunPlaces &places, const Field *velocity, RunSums *sums);
 
 }  // namespace eulastic

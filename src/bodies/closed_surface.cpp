@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 namespace eulastic {
 namespace {
@@ -34,16 +35,12 @@ Polygon cut(const Polygon &polygon, int d, double plane, int side) noexcept {
   return result;
 }
 
-double low_end(const Polygon &polygon, int d) noexcept {
-  double x = polygon.corner[0][d];
-  for (int a = 1; a < polygon.n; ++a) x = std::min(x, polygon.corner[a][d]);
-  return x;
-}
-
-double high_end(const Polygon &polygon, int d) noexcept {
-  double x = polygon.corner[0][d];
-  for (int a = 1; a < polygon.n; ++a) x = std::max(x, polygon.corner[a][d]);
-  return x;
+// Returns the lowest and the highest coordinate of the corners along d.
+std::pair<double, double> ends(const Polygon &polygon, int d) noexcept {
+  double low = polygon.corner[0][d], high = low;
+  for (int a = 1; a < polygon.n; ++a)
+    low = std::min(low, polygon.corner[a][d]), high = std::max(high, polygon.corner[a][d]);
+  return {low, high};
 }
 
 // Calls visit(c, piece) for the pieces between the cell faces c and c + 1, begin <= c < end. Each is cut out of the
@@ -51,7 +48,8 @@ double high_end(const Polygon &polygon, int d) noexcept {
 template <class Visit>
 void for_strips(const Polygon &polygon, int d, int begin, int end, Visit visit) {
   if (polygon.n < 3) return;
-  const double first = std::floor(low_end(polygon, d)), last = std::max(std::ceil(high_end(polygon, d)), first + 1);
+  const auto [low, high] = ends(polygon, d);
+  const double first = std::floor(low), last = std::max(std::ceil(high), first + 1);
   const int from = static_cast<int>(std::clamp(first, double(begin), double(end)));
   const int to = static_cast<int>(std::clamp(last, double(begin), double(end)));
   for (int c = from; c < to; ++c) {
@@ -91,7 +89,7 @@ public:
   void add(const Polygon &triangle, int sign) {
     for_strips(triangle, 2, begin_[2], begin_[2] + n_[2], [&](int k, const Polygon &in_z) {
       for_strips(in_z, 1, begin_[1], begin_[1] + n_[1], [&](int j, const Polygon &column) {
-        const double low = low_end(column, 0);
+        const double low = ends(column, 0).first;
         if (low >= begin_[0] + n_[0]) return;
         if (low < 0)  // before the domain: all cells are at higher x
           if (const Polygon before = cut(column, 0, 0, -1); before.n >= 3)
@@ -171,7 +169,8 @@ std::string fill_surface(const CellWindow &window, const std::vector<Triangle> &
     for (int a = 0; a < 3; ++a)
       for (int d = 0; d < 3; ++d) {
         polygon.corner[a][d] = triangle[a][d] / window.spacing(d);
-        if (!(std::abs(polygon.corner[a][d]) < 1e9)) return "a corner is more than 1e9 cells away from the box";
+        if (!(std::abs(polygon.corner[a][d]) < 1e9))
+          return "a corner is more than 1e9 cells away from the box; accepted: a surface near it";
       }
     volumes.add(polygon, sign);
   }

@@ -6,7 +6,7 @@
 namespace eulastic {
 
 Crowd::Crowd(const DomainShape &grid, double diameter, std::size_t expected)
-    : grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3), widest_(diameter / 2) {
+    : grid_(grid), dimension_(grid.dimension()), widest_(diameter / 2) {
   const double most = std::max(8.0, std::pow(double(expected), 1.0 / dimension_) * 2);
   double count = 1;
   for (int d = 0; d < dimension_; ++d) {
@@ -75,10 +75,6 @@ bool Crowd::any_image(const PlacedConvex &a, const PlacedConvex &b, Stop stop) c
   return false;
 }
 
-bool Crowd::clear(const PlacedConvex &a, const PlacedConvex &b) const {
-  return !any_image(a, b, [&](const Real3 &shift) { return !separated(a, b, shift); });
-}
-
 template <class Stop>
 bool Crowd::any_touching(const PlacedConvex &body, std::size_t except, Stop stop) const {
   Int3 list[3], count{1, 1, 1};  // neighbouring bins along each direction, without duplicates
@@ -102,7 +98,8 @@ bool Crowd::any_touching(const PlacedConvex &body, std::size_t except, Stop stop
         const std::size_t at = list[0][i] + std::size_t(bins_[0]) * (list[1][j] + std::size_t(bins_[1]) * list[2][k]);
         for (int b = first_[at]; b >= 0; b = links_[b].next) {
           if (static_cast<std::size_t>(b) == except || is_far(body.centre, links_[b].centre, reach)) continue;
-          if (!clear(body, bodies_[b]) && stop(b)) return true;
+          const auto touches = [&](const Real3 &shift) { return !separated(body, bodies_[b], shift); };
+          if (any_image(body, bodies_[b], touches) && stop(b)) return true;
         }
       }
   return false;
@@ -112,9 +109,9 @@ bool Crowd::has_room_for(const PlacedConvex &body, std::size_t except) const {
   return !any_touching(body, except, [](int) { return true; });
 }
 
-std::vector<int> Crowd::touching(const PlacedConvex &body, std::size_t except) const {
+std::vector<int> Crowd::touching(const PlacedConvex &body) const {
   std::vector<int> found;
-  any_touching(body, except, [&](int other) {
+  any_touching(body, nobody, [&](int other) {
     found.push_back(other);
     return false;
   });

@@ -16,13 +16,11 @@ public:
   const PlacedConvex &operator[](std::size_t b) const { return bodies_[b]; }
   void add(const PlacedConvex &body);
   void move(std::size_t b, const PlacedConvex &to);
-  /// Returns the bodies that touch body b, periodic images included.
-  std::vector<int> touching(std::size_t b) const { return touching(bodies_[b], b); }
-  /// Returns the bodies other than `except` that touch `body`, whose centre is in the domain.
-  std::vector<int> touching(const PlacedConvex &body, std::size_t except) const;
+  static constexpr std::size_t nobody = static_cast<std::size_t>(-1);
+  /// Returns the bodies that touch `body`, whose centre is in the domain, periodic images included.
+  std::vector<int> touching(const PlacedConvex &body) const;
   /// Returns whether `body`, whose centre is in the domain, touches no body other than `except`, images included.
-  bool has_room_for(const PlacedConvex &body, std::size_t except) const;
-
+  bool has_room_for(const PlacedConvex &body, std::size_t except = nobody) const;
   /// Returns the penetrations of `body`, whose centre is in the domain, into bodies other than `except`, one for each
   /// periodic image.
   std::vector<Penetration> penetrations(const PlacedConvex &body, std::size_t except) const;
@@ -39,7 +37,6 @@ private:
   // Returns whether stop(shift) is true for an image of b that may touch a.
   template <class Stop>
   bool any_image(const PlacedConvex &a, const PlacedConvex &b, Stop stop) const;
-  bool clear(const PlacedConvex &a, const PlacedConvex &b) const;
   // Returns whether stop(index) is true for a body that touches `body`.
   template <class Stop>
   bool any_touching(const PlacedConvex &body, std::size_t except, Stop stop) const;

@@ -49,46 +49,41 @@ void for_points_of(const Box &box, const PlacedBody &body, const Staggering &at,
               f(Int3{i - first[0], j - first[1], k - first[2]}, Int3{i + x.shift, j + y.shift, k + z.shift});
 }
 
-// Returns a component of R diag(l^2) R^T.
-double turned_stretch(const SpeciesSpec &spec, const Rotation &R, const TensorComponent &component) {
+// Sets B = R diag(l^2) R^T of a rotated body. An edge belongs to the body that fills at least half of its four cells,
+// otherwise to the first body that has a part of them; a centre where owns(point) says so. for_body(staggering, set)
+// calls set(local point, global unwrapped point) for the points that the body may touch.
+template <class ForBody, class Owns>
+void turn_stretch(const SpeciesSpec &spec, const PlacedBody &body, const BodyPlace &place, const ForBody &for_body,
+                  const Owns &owns, CarriedTensor *tensor) {
+  const Rotation R = rotation(place.orientation);
   const Real3 &l = spec.initial_stretch;
-  double turned = 0;
-  for (int m = 0; m < 3; ++m) turned += R[component.a][m] * l[m] * l[m] * R[component.b][m];
-  return turned;
+  for (int c = 0; c < tensor->field.count(); ++c) {
+    const TensorComponent &component = tensor->components()[c];
+    const View B = tensor->field[c];
+    double turned = 0;
+    for (int m = 0; m < 3; ++m) turned += R[component.a][m] * l[m] * l[m] * R[component.b][m];
+    for_body(component.at, [&](const Int3 &p, const Int3 &cell) {
+      double &value = B(p[0], p[1], p[2]);
+      if (!component.on_edge()) {
+        if (owns(p)) value = turned;
+        return;
+      }
+      double sum = 0;  // of phi in the four cells around the edge
+      for (int n = 0; n < 4; ++n) {
+        Int3 beside = cell;
+        beside[component.a] -= n % 2;
+        beside[component.b] -= n / 2;
+        sum += body.fraction(beside);
+      }
+      if (sum >= 2 || (sum > 0 && value == 0)) value = turned;
+    });
+  }
 }
 
-// Sets B = R diag(l^2) R^T of rotated bodies. An edge belongs to the body that fills at least half of its four cells,
-// otherwise to the first body that has a part of them.
-void turn_stretch(const Domain &domain, const SpeciesSpec &spec, const Places &places, int first_label, Phase *phase) {
+// Whether rotation changes B of a body.
+bool is_turned(const SpeciesSpec &spec, const BodyPlace &place) {
   const Real3 &l = spec.initial_stretch;
-  if ((l[0] == l[1] && l[1] == l[2]) || !spec.material().carries_tensor()) return;
-  const Surface surface(spec, domain.dimension());
-  for (const NumberedPlace &place : places.known) {
-    if (place.orientation == Real3{} || !is_near(domain, domain.rank(), surface, place)) continue;
-    const Rotation R = rotation(place.orientation);
-    const PlacedBody body(surface, domain.domain_shape(), place);
-    for (int c = 0; c < phase->tensor.field.count(); ++c) {
-      const TensorComponent &component = phase->tensor.components()[c];
-      const auto [x, y, at] = component;
-      const double turned = turned_stretch(spec, R, component);
-      const View B = phase->tensor.field[c], label = phase->label[0];
-      for_points_of(domain, body, at, [&, x = x, y = y](const Int3 &p, const Int3 &cell) {
-        double &value = B(p[0], p[1], p[2]);
-        if (!component.on_edge()) {
-          if (label(p[0], p[1], p[2]) == first_label + place.index) value = turned;
-          return;
-        }
-        double sum = 0;  // of phi in the four cells around the edge
-        for (int n = 0; n < 4; ++n) {
-          Int3 beside = cell;
-          beside[x] -= n % 2;
-          beside[y] -= n / 2;
-          sum += body.fraction(beside);
-        }
-        if (sum >= 2 || (sum > 0 && value == 0)) value = turned;
-      });
-    }
-  }
+  return place.orientation != Real3{} && !(l[0] == l[1] && l[1] == l[2]);
 }
 
 }  // namespace
@@ -121,9 +116,18 @@ PetscErrorCode fill_phase(const Domain &domain, const SpeciesSpec &spec, const P
   EventScope scope(Event::bodies);
   phase->species = spec.name;
   phase->material = spec.material();
-  fill_bodies(domain, Surface(spec, domain.dimension()), places, first_label, phase);
+  const Surface surface(spec, domain.dimension());
+  fill_bodies(domain, surface, places, first_label, phase);
   stretch_phase(domain, spec, phase);
-  turn_stretch(domain, spec, places, first_label, phase);
+  for (const NumberedPlace &place : places.known) {
+    if (!is_turned(spec, place) || !is_near(domain, domain.rank(), surface, place)) continue;
+    const PlacedBody body(surface, domain.domain_shape(), place);
+    const auto for_body = [&](const Staggering &at, const auto &set) { for_points_of(domain, body, at, set); };
+    const auto owns = [&, label = phase->label[0]](const Int3 &p) {
+      return label(p[0], p[1], p[2]) == first_label + place.index;
+    };
+    if (phase->material.carries_tensor()) turn_stretch(spec, body, place, for_body, owns, &phase->tensor);
+  }
   PetscFunctionReturn(0);
 }
 
@@ -148,27 +152,16 @@ Phase fill_body(const Box &box, const SpeciesSpec &spec, const Surface &surface,
   phase.tensor.centred = phase.material.is_membrane();
   const PlacedBody body(surface, box.domain_shape(), place);
   const Int3 &first = box.layout().begin;
-  const auto fraction = [&](const Int3 &p) {
-    return body.fraction({first[0] + p[0], first[1] + p[1], first[2] + p[2]});
-  };
-  for_points(box.rows(), [&](int i, int j, int k) { phase.fraction[0](i, j, k) = fraction({i, j, k}); });
-  stretch_phase(box, spec, &phase);
-  const Real3 &l = spec.initial_stretch;
-  if ((l[0] == l[1] && l[1] == l[2]) || place.orientation == Real3{}) return phase;
-  for (int c = 0; c < phase.tensor.field.count(); ++c) {
-    const TensorComponent &component = phase.tensor.components()[c];
-    const double turned = turned_stretch(spec, rotation(place.orientation), component);
-    for_points(box.points(component.at), [&](int i, int j, int k) {
-      double sum = 0;  // of phi in the four cells around an edge, or in the cell
-      for (int n = 0; n < (component.on_edge() ? 4 : 1); ++n) {
-        Int3 beside{i, j, k};
-        beside[component.a] -= n % 2;
-        beside[component.b] -= n / 2;
-        sum += fraction(beside);
-      }
-      if (sum > 0) phase.tensor.field[c](i, j, k) = turned;
+  const auto for_body = [&](const Staggering &at, const auto &set) {
+    for_points(box.points(at), [&](int i, int j, int k) {
+      set(Int3{i, j, k}, Int3{first[0] + i, first[1] + j, first[2] + k});
     });
-  }
+  };
+  const View phi = phase.fraction[0];
+  for_body(at_centre, [&](const Int3 &p, const Int3 &cell) { phi(p[0], p[1], p[2]) = body.fraction(cell); });
+  stretch_phase(box, spec, &phase);
+  const auto owns = [&](const Int3 &p) { return phi(p[0], p[1], p[2]) > 0; };
+  if (is_turned(spec, place)) turn_stretch(spec, body, place, for_body, owns, &phase.tensor);
   return phase;
 }
 

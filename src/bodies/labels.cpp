@@ -31,18 +31,8 @@ struct OpenCell {
   double label;
 };
 
-// Range of existing cells, including one ghost layer.
-struct Reach {
-  Int3 from{}, to{};
-
-  explicit Reach(const Box &box) {
-    for (int d = 0; d < 3; ++d) {
-      const bool ghosts = box.layout().ghosts[d] > 0;
-      from[d] = ghosts && !box.touches_low(d) ? -1 : 0;
-      to[d] = box.cells()[d] - (ghosts && !box.touches_high(d) ? 0 : 1);
-    }
-  }
-};
+// Existing cells along each direction, including one ghost layer.
+using Reach = std::array<Box::Range, 3>;
 
 // Returns the best neighbour of local cell c, with label 0 if there is none. Confirmed face neighbours come first.
 Candidate best_neighbour(const Int3 &c, const Reach &reach, ConstView phi, ConstView label) {
@@ -57,12 +47,14 @@ Candidate best_neighbour(const Int3 &c, const Reach &reach, ConstView phi, Const
     for (const int side : {-1, 1}) {
       Int3 at = c;
       at[d] += side;
-      if (at[d] >= reach.from[d] && at[d] <= reach.to[d]) consider(at[0], at[1], at[2], true);
+      if (at[d] >= reach[d].begin && at[d] < reach[d].end) consider(at[0], at[1], at[2], true);
     }
   if (best.label > 0) return best;
-  for (int k = std::max(c[2] - 1, reach.from[2]); k <= std::min(c[2] + 1, reach.to[2]); ++k)
-    for (int j = std::max(c[1] - 1, reach.from[1]); j <= std::min(c[1] + 1, reach.to[1]); ++j)
-      for (int i = std::max(c[0] - 1, reach.from[0]); i <= std::min(c[0] + 1, reach.to[0]); ++i)
+  const auto first = [&](int d) { return std::max(c[d] - 1, reach[d].begin); };
+  const auto end = [&](int d) { return std::min(c[d] + 2, reach[d].end); };
+  for (int k = first(2); k < end(2); ++k)
+    for (int j = first(1); j < end(1); ++j)
+      for (int i = first(0); i < end(0); ++i)
         if ((i != c[0]) + (j != c[1]) + (k != c[2]) > 1) consider(i, j, k, false);
   return best;
 }
@@ -114,7 +106,8 @@ PetscErrorCode carry(const Box &box, GhostExchange &exchange, bool only_new, Pha
   in_row_parts(box, [&](const RowPart &part) {
     cells[part.number] = only_new ? new_cells(box, part, phase->rows, phi, label) : open_cells(box, part, phi, label);
   });
-  const Reach reach(box);
+  const auto with_ghosts = [&](int d) { return box.points_with_ghosts(d, false, 1); };
+  const Reach reach{with_ghosts(0), with_ghosts(1), with_ghosts(2)};
   for (int layer = 0; layer < layers; ++layer) {
     PetscCall(exchange.update_ghosts(phase->label, 1, &phase->rows));
     in_row_parts(box, [&](const RowPart &part) {

@@ -21,19 +21,22 @@ constexpr int first_moment = 1, second_moment = 4, momentum = 10, strain = 13, f
 constexpr int on_open_side = 21, all_sums = 22, position_sums = 4;
 constexpr int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
-double largest_of(const double *values, int n, double so_far) {
-  for (int i = 0; i < n; ++i) so_far = std::max(so_far, std::abs(values[i]));
-  return so_far;
-}
-
-// The largest tr B where phi >= 1/2.
-double largest_trace(const Run &run, int dimension, double so_far) {
+// Extends the largest |v_d| on the faces and |energy density| of the cells of a run, and tr B where phi >= 1/2.
+void extend_largest(const Box &box, const Run &run, const Field &velocity, const double *density, double *speed,
+                    double *energy, double *trace) {
+  const auto extend = [&](const double *values, double *most) {
+    for (int i = 0; i < run.size(); ++i) *most = std::max(*most, std::abs(values[i]));
+  };
+  for (int d = 0; d < box.dimension(); ++d) {
+    extend(run.of(velocity, d), speed);
+    extend(run.of(velocity, d) + velocity[d].stride(d), speed);
+  }
+  extend(density, energy);
   const double *phi = run.of(run.phase.fraction, 0), *xx = run.of(run.phase.tensor.field, 0),
                *yy = run.of(run.phase.tensor.field, 1),
-               *zz = dimension == 3 ? run.of(run.phase.tensor.field, 2) : nullptr;
+               *zz = box.dimension() == 3 ? run.of(run.phase.tensor.field, 2) : nullptr;
   for (int i = 0; i < run.size(); ++i)
-    if (phi[i] >= 0.5) so_far = std::max(so_far, xx[i] + yy[i] + (zz ? zz[i] : 1));
-  return so_far;
+    if (phi[i] >= 0.5) *trace = std::max(*trace, xx[i] + yy[i] + (zz ? zz[i] : 1));
 }
 
 // Returns the sum of phi over cells of a run at open boundaries; `all` is its sum over the whole run.
@@ -123,13 +126,7 @@ PetscErrorCode find_largest(const Domain &domain, const std::vector<Phase> &phas
           density.insert(density.end(), of_row.begin() + row.i_begin, of_row.begin() + row.i_end);
         },
         [&](const Run &run) {
-          for (int d = 0; d < domain.dimension(); ++d) {
-            const double *face = run.of(velocity, d);
-            some[0] = largest_of(face, run.size(), some[0]);
-            some[0] = largest_of(face + velocity[d].stride(d), run.size(), some[0]);
-          }
-          some[1] = largest_of(of_row.data() + run.begin, run.size(), some[1]);
-          trace_of[run.body] = largest_trace(run, domain.dimension(), trace_of[run.body]);
+          extend_largest(domain, run, velocity, of_row.data() + run.begin, &some[0], &some[1], &trace_of[run.body]);
         });
   });
   std::vector<double> most;
@@ -145,7 +142,8 @@ PetscErrorCode find_largest(const Domain &domain, const std::vector<Phase> &phas
 void add_run(const Box &box, const Run &run, const RunPlaces &places, const Field &velocity, const double *density,
              double largest_speed, double largest_energy, BodySums *sums) {
   const int b = run.body;
-  const RunSums of_run = sum_all(box, run, places, velocity);
+  RunSums of_run;
+  sum_run(box, run, places, &velocity, &of_run);
   const double cells = of_run.fraction, x = of_run.first_moment, y = places.y, z = places.z;
   const std::array first{x, cells * y, cells * z};
   const std::array second{of_run.second_moment, cells * (y * y), cells * (z * z), cells * (y * z), x * z, x * y};
@@ -214,14 +212,9 @@ BodyMeasure measure_in_box(const BodyInBox &body, const RowEnergy &energy) {
       const int first = layout.begin[0] + begin;
       end = std::min(row.i_end, begin + ExactSums::block - ExactSums::index_in_block(first));
       const Run run{phase, 0, begin, end, row.j, row.k, first};
-      for (int d = 0; d < box.dimension(); ++d) {
-        const double *face = run.of(*body.velocity, d);
-        largest.speed = largest_of(face, run.size(), largest.speed);
-        largest.speed = largest_of(face + (*body.velocity)[d].stride(d), run.size(), largest.speed);
-      }
+      extend_largest(box, run, *body.velocity, density.data() + begin, &largest.speed, &largest.energy,
+                     &largest.trace[0]);
       pieces.push_back({run, {density.begin() + begin, density.begin() + end}});
-      largest.energy = largest_of(pieces.back().energy.data(), run.size(), largest.energy);
-      largest.trace[0] = largest_trace(run, box.dimension(), largest.trace[0]);
     }
   }
   BodySums sums(1, all_sums);
@@ -252,7 +245,8 @@ PetscErrorCode BodyTracker::follow(const Domain &domain, const std::vector<Phase
         domain, part, phases, owners, [](const Phase &, const Segment &) {},
         [&](const Run &run) {
           const RunPlaces places = places_of(domain, run, references[run.body]);
-          const RunSums of_run = sum_positions(domain, run, places);
+          RunSums of_run;
+          sum_run(domain, run, places, nullptr, &of_run);
           some.add(run.body, 0, of_run.fraction);
           some.add(run.body, first_moment, of_run.first_moment);
           some.add(run.body, first_moment + 1, of_run.fraction * places.y);
@@ -314,12 +308,7 @@ void BodyTracker::add_phase(const Domain &domain, const Places &places) {
   const BodyRange own = BodyRange::of(places.count, domain.rank(), domain.ranks());
   for (const NumberedPlace &place : places.known) {
     if (!own.has(place.index)) continue;
-    Int3 cell{};
-    for (int d = 0; d < domain.dimension(); ++d) {
-      const int at = static_cast<int>(std::floor(place.centre[d] / domain.spacing()[d]));
-      cell[d] = std::clamp(at, 0, domain.domain_cells()[d] - 1);
-    }
-    placed_.push_back({first_.back() + place.index, cell, 0});
+    placed_.push_back({first_.back() + place.index, cell_of(domain, place.centre), 0});
   }
   first_.push_back(first_.back() + places.count);
 }
@@ -362,20 +351,18 @@ PetscErrorCode BodyTracker::add_like(const Domain &domain, int label, const Int3
     copy.reference = within_box(domain, {copy.reference})[0];
     known.push_back(copy);
   }
-  like_.push_back(label > first_.back() ? like_[label - first_.back() - 1] : label);
+  like_.push_back(placed(label));
   PetscCall(give_to_owners(domain, std::move(known)));
   PetscFunctionReturn(0);
 }
 
 void BodyTracker::set_like(const std::vector<long> &like) {
   like_.clear();
-  for (const long label : like)
-    like_.push_back(label > first_.back() ? like_[label - first_.back() - 1] : static_cast<int>(label));
+  for (const long label : like) like_.push_back(placed(static_cast<int>(label)));
 }
 
 int BodyTracker::species(int label) const {
-  const int placed = label > first_.back() ? like_[label - first_.back() - 1] : label;
-  return static_cast<int>(std::lower_bound(first_.begin(), first_.end(), placed) - first_.begin()) - 1;
+  return static_cast<int>(std::lower_bound(first_.begin(), first_.end(), placed(label)) - first_.begin()) - 1;
 }
 
 PetscErrorCode BodyTracker::connect(const Domain &domain, const std::vector<Phase> &phases,
@@ -425,11 +412,7 @@ PetscErrorCode BodyTracker::owned_references(const Domain &domain, std::vector<I
   PetscFunctionReturn(0);
 }
 
-void BodyTracker::wrap(const Box &box) {
-  for (Int3 &cell : references_)
-    for (int d = 0; d < 3; ++d)
-      cell[d] = (cell[d] % box.domain_cells()[d] + box.domain_cells()[d]) % box.domain_cells()[d];
-}
+void BodyTracker::wrap(const Box &box) { references_ = within_box(box, std::move(references_)); }
 
 PetscErrorCode BodyTracker::known(const Domain &domain, std::vector<Int3> *references,
                                   std::vector<double> *first_volumes) {

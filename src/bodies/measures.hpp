@@ -96,6 +96,8 @@ private:
   };
   PetscErrorCode give_to_owners(const Domain &domain, std::vector<Known> known);
   PetscErrorCode settle(const Domain &domain);
+  // The label of a placed body, or of the placed body of which this body is a copy.
+  int placed(int label) const { return label > first_.back() ? like_[label - first_.back() - 1] : label; }
 
   std::vector<Known> placed_;     ///< bodies that have not been sent to their owners yet
   std::vector<Int3> references_;  ///< reference cells of the bodies that this rank owns

@@ -13,14 +13,9 @@ namespace {
 constexpr double excess = 0.01;  // of the sum of two fractions over 1; above the rounding of listed positions
 constexpr double skin = 5e-4;    // in cells: bodies that overlap by less count as touching
 
-bool has_shape(const SpeciesSpec &spec) { return spec.shape != Shape::voxels && spec.shape != Shape::state; }
-bool has_ends(const SpeciesSpec &spec) {
-  return has_shape(spec) && spec.shape != Shape::cylinder && !is_anchored(spec.shape);
-}
-
 // Returns whether bodies of `two` are compared with those of `one`, an earlier species or the same.
 bool is_wanted(const SpeciesSpec &one, const SpeciesSpec &two) {
-  if (!has_shape(one) || !has_shape(two) || two.placement == Placement::random) return false;
+  if (is_from_file(one.shape) || is_from_file(two.shape) || two.placement == Placement::random) return false;
   if (one.material().anchored && two.material().anchored) return false;
   return &one != &two || two.contact != Contact::merge;
 }
@@ -58,15 +53,13 @@ double shared_in(const PlacedBody &a, const PlacedBody &b, const Common (&range)
 class Search {
 public:
   Search(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const DomainShape &grid)
-      : species_(species), grid_(grid), dimension_(grid.cells[2] == 1 ? 2 : 3) {
-    double spacing = grid.length[0] / grid.cells[0];
-    for (int d = 1; d < dimension_; ++d) spacing = std::min(spacing, grid.length[d] / grid.cells[d]);
+      : species_(species), grid_(grid), dimension_(grid.dimension()) {
     const std::vector<int> first = first_labels(species, places);
     for (std::size_t s = 0; s < species.size(); ++s) {
       surfaces_.emplace_back(species[s], dimension_);
-      shapes_.emplace_back(species[s], dimension_, -skin * spacing);
-      if (has_ends(species[s])) widest_ = std::max(widest_, 2 * shapes_[s].outer_radius());
-      if (!has_shape(species[s])) continue;
+      shapes_.emplace_back(species[s], dimension_, -skin * grid.shortest_spacing());
+      if (is_closed(species[s].shape)) widest_ = std::max(widest_, 2 * shapes_[s].outer_radius());
+      if (is_from_file(species[s].shape)) continue;
       for (const NumberedPlace &place : places[s].known) bodies_.push_back({first[s] + place.index, s, &place});
     }
     find_candidates();
@@ -80,7 +73,7 @@ public:
 
   // Returns whether the centres of two bodies, periodic images included, and their extents agree to 0.01 cells.
   bool at_same_place(int one, int two) const {
-    if (!has_ends(spec(one)) || !has_ends(spec(two))) return false;
+    if (!is_closed(spec(one).shape) || !is_closed(spec(two).shape)) return false;
     for (int d = 0; d < dimension_; ++d) {
       const double close = 0.01 * grid_.length[d] / grid_.cells[d];
       double apart = place(one).centre[d] - place(two).centre[d];
@@ -129,11 +122,11 @@ private:
       candidates_.emplace_back(two, one);
     };
     for (int b = 0; b < bodies(); ++b) {
-      const bool ends = has_ends(spec(b));
+      const bool ends = is_closed(spec(b).shape);
       for (const int other : endless)
         if (!ends || may_meet(other, b)) add(b, other);
       if (ends)
-        for (const int c : crowd.touching(convex(b), in_crowd.size())) add(b, in_crowd[c]);
+        for (const int c : crowd.touching(convex(b))) add(b, in_crowd[c]);
       else
         for (const int other : in_crowd)
           if (may_meet(b, other)) add(b, other);
@@ -214,7 +207,7 @@ std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const st
 
 void add_shared(const SpeciesSpec &spec, const Places &places, const DomainShape &grid, const CellWindow &cells,
                 ConstView fraction, std::map<int, SharedVolume> *shared) {
-  const Surface surface(spec, grid.cells[2] == 1 ? 2 : 3);
+  const Surface surface(spec, grid.dimension());
   const Int3 &first = cells.begin;
   for (const NumberedPlace &place : places.known) {
     const PlacedBody body(surface, grid, place);

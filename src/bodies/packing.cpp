@@ -6,8 +6,6 @@
 namespace eulastic {
 namespace {
 
-constexpr std::size_t nobody = static_cast<std::size_t>(-1);
-
 // Rows run along direction `row`. Successive rows along `next` are closer together and shifted by half a distance;
 // next < 0: a lattice of bounding boxes without a shift.
 struct LatticeStyle {
@@ -39,7 +37,7 @@ public:
       : region_(region), grid_(grid), body_(body), style_(style), stretch_(stretch) {
     for (int d = 0; d < 3; ++d) {
       x_[d] = {body.centre[d]};
-      if (d < (grid.cells[2] == 1 ? 2 : 3)) x_[d] = coordinates(d, offset[d]);
+      if (d < grid.dimension()) x_[d] = coordinates(d, offset[d]);
     }
   }
 
@@ -101,7 +99,7 @@ std::vector<BodyPlace> find_packing(const Region &region, const Crowd &crowd, co
                                     const ConvexBody &shape, const std::vector<Real3> &orientations,
                                     std::size_t enough) {
   std::vector<BodyPlace> best, sites;
-  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  const int dimension = grid.dimension();
   Int3 offsets{1, 1, 1};
   for (int d = 0; d < 3; ++d)
     if (region.is_round(d)) offsets[d] = 2;
@@ -123,7 +121,7 @@ std::vector<BodyPlace> find_packing(const Region &region, const Crowd &crowd, co
                 there.centre[d] -= grid.length[d];
               if (there.centre[d] < 0 || there.centre[d] > grid.length[d]) return;
             }
-            if (region.holds(there) && crowd.has_room_for(there, nobody)) sites.push_back({there.centre, orientation});
+            if (region.holds(there) && crowd.has_room_for(there)) sites.push_back({there.centre, orientation});
           });
           if (sites.size() > best.size()) best = sites;
           if (best.size() >= enough) return best;

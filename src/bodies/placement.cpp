@@ -29,40 +29,53 @@ std::string read_list(const SpeciesSpec &spec, int dimension, std::vector<BodyPl
   });
 }
 
-// Returns why the lumen of a tube is not inside the domain, or an empty string.
-std::string why_no_lumen(const SpeciesSpec &spec, const DomainShape &grid, const Real3 &centre) {
+// Why a body cannot be where it is: the option that says otherwise, without the name of the species, and one sentence.
+struct Refusal {
+  std::string option, why;
+};
+
+// Empty if the lumen of a tube is inside the domain.
+Refusal refuse_lumen(const SpeciesSpec &spec, const DomainShape &grid, const Real3 &centre) {
   const double throat = spec.shape == Shape::constricted_tube ? spec.throat_length / 2 : 0;
-  for (int d = 0; d < (grid.cells[2] == 1 ? 2 : 3); ++d) {
-    const double half = d == spec.axis ? throat : spec.radius, slack = 1e-5 * grid.length[d];
+  for (int d = 0; d < grid.dimension(); ++d) {
+    const bool along = d == spec.axis;
+    const double half = along ? throat : spec.radius, slack = 1e-5 * grid.length[d];
     if (centre[d] - half >= -slack && centre[d] + half <= grid.length[d] + slack) continue;
-    return std::string(d == spec.axis ? "its throat" : "its lumen") + " leaves the box: " + "xyz"[d] + " = " +
-           text(centre[d] - half) + " ... " + text(centre[d] + half) + ", the box is 0 ... " + text(grid.length[d]);
+    return {"centre", std::string(along ? "the throat" : "the lumen") + " leaves the box: " + "xyz"[d] + " = " +
+                          text(centre[d] - half) + " ... " + text(centre[d] + half) + "; accepted: within 0 ... " +
+                          text(grid.length[d])};
   }
   return {};
 }
 
-// Returns why a body cannot be at `place`, or an empty string.
-std::string refusal_reason(const SpeciesSpec &spec, const Surface &surface, const DomainShape &grid,
-                           const BodyPlace &place) {
-  const int dimension = grid.cells[2] == 1 ? 2 : 3;
-  if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0)) return "rotates only about z in 2-D";
+// Empty if a body can be at `place`.
+Refusal refuse(const SpeciesSpec &spec, const Surface &surface, const DomainShape &grid, const BodyPlace &place) {
+  const int dimension = grid.dimension();
+  if (dimension == 2 && (place.orientation[0] != 0 || place.orientation[1] != 0))
+    return {"orientation", "a body is rotated about z only in 2-D; accepted: 0,0,angle"};
   const bool may_cross = spec.shape == Shape::cylinder || is_anchored(spec.shape);
   if (may_cross && place.orientation != Real3{})
-    return "cannot be rotated: cylinders, slabs and tubes have an axis instead of an orientation";
-  if (is_tube(spec.shape)) return why_no_lumen(spec, grid, place.centre);
+    return {"orientation", "cylinders, slabs and tubes cannot be rotated; accepted: 0,0,0, with their direction as -" +
+                               spec.name + "_axis"};
+  if (is_tube(spec.shape)) return refuse_lumen(spec, grid, place.centre);
+  const char *position = spec.shape == Shape::slab              ? "interval"
+                         : spec.placement == Placement::lattice ? "count"
+                                                                : "centre";
   for (int d = 0; d < dimension; ++d) {
     const double centre = place.centre[d], length = grid.length[d], bound = surface.bounding_radius();
     const std::string direction(1, "xyz"[d]);
+    const auto within = [&] { return "; accepted: within 0 ... " + text(length); };
     if (!(centre >= 0 && centre <= length))
-      return "its centre " + direction + " = " + text(centre) + " is outside the box, 0 ... " + text(length);
+      return {position, direction + " = " + text(centre) + " is outside the box" + within()};
     if (centre >= bound && centre + bound <= length) continue;
     const double extent = surface.support(rotation(place.orientation)[d]), slack = 1e-5 * length;
     if (std::isfinite(extent) && 2 * extent > length + slack)
-      return "it is " + text(2 * extent) + " long in " + direction + ", the box only " + text(length);
+      return {"shape", "the body is " + text(2 * extent) + " long in " + direction + "; accepted: at most " +
+                           text(length) + ", the length of the box"};
     if (grid.boundary[d] == Boundary::periodic || may_cross) continue;
     if (centre - extent < -slack || centre + extent > length + slack)
-      return "it reaches into the wall: " + direction + " = " + text(centre - extent) + " ... " +
-             text(centre + extent) + ", the box is 0 ... " + text(length);
+      return {position, "the body reaches into the wall: " + direction + " = " + text(centre - extent) + " ... " +
+                            text(centre + extent) + within()};
   }
   return {};
 }
@@ -71,7 +84,7 @@ std::string refusal_reason(const SpeciesSpec &spec, const Surface &surface, cons
 class Placing {
 public:
   Placing(const SpeciesSpec &spec, const DomainShape &grid, const KeptBodies &kept, Places *places)
-      : spec_(spec), grid_(grid), surface_(spec, grid.cells[2] == 1 ? 2 : 3), kept_(kept), places_(*places) {}
+      : spec_(spec), grid_(grid), surface_(spec, grid.dimension()), kept_(kept), places_(*places) {}
 
   void expect(int count) {
     places_.count = count;
@@ -81,9 +94,11 @@ public:
   /// Adds the next body; returns an error, or an empty string.
   std::string add(BodyPlace place) {
     const int index = next_++;
-    if (grid_.cells[2] == 1) place.centre[2] = grid_.length[2] / 2;
-    const std::string reason = refusal_reason(spec_, surface_, grid_, place);
-    if (!reason.empty()) return places_.count > 1 ? "body " + std::to_string(index + 1) + ": " + reason : reason;
+    if (grid_.dimension() == 2) place.centre[2] = grid_.length[2] / 2;
+    const Refusal refusal = refuse(spec_, surface_, grid_, place);
+    if (!refusal.why.empty())
+      return "-" + spec_.name + "_" + (spec_.placement == Placement::list ? "positions" : refusal.option) + ": " +
+             (places_.count > 1 ? "body " + std::to_string(index + 1) + ": " : "") + refusal.why;
     if (own_.has(index)) places_.known.push_back({place, index});
     return {};
   }
@@ -105,7 +120,8 @@ private:
 // Rank 0 reads the list and broadcasts it in pieces.
 std::string place_list(const SpeciesSpec &spec, int dimension, Placing *placing) {
   std::vector<BodyPlace> all, piece;
-  if (std::string wrong = on_rank_0([&] { return read_list(spec, dimension, &all); }); !wrong.empty()) return wrong;
+  if (const std::string wrong = on_rank_0([&] { return read_list(spec, dimension, &all); }); !wrong.empty())
+    return "-" + spec.name + "_positions: " + wrong;
   std::size_t count = all.size();
   share(&count);
   placing->expect(static_cast<int>(count));
@@ -120,10 +136,7 @@ std::string place_list(const SpeciesSpec &spec, int dimension, Placing *placing)
 
 std::string make_lattice(const SpeciesSpec &spec, const DomainShape &grid, Placing *placing) {
   const Int3 &n = spec.count;
-  if (n[0] < 1 || n[1] < 1 || n[2] < 1) return "a lattice needs at least one body in every direction";
-  if (grid.cells[2] == 1 && n[2] != 1) return "a lattice has one layer in z in 2-D";
-  if (double(n[0]) * n[1] * n[2] > most_bodies) return "at most " + std::to_string(most_bodies) + " bodies";
-  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  const int dimension = grid.dimension();
   const Surface surface(spec, dimension);
   Random random(spec.seed, spec.name);
   Real3 pitch, range{};
@@ -164,12 +177,10 @@ void Places::share_among(int rank, int ranks) {
 }
 
 std::string place_bodies(const SpeciesSpec &spec, const DomainShape &grid, Places *places, const KeptBodies &kept) {
-  const int dimension = grid.cells[2] == 1 ? 2 : 3;
+  const int dimension = grid.dimension();
   *places = {};
-  if (spec.shape == Shape::voxels || spec.shape == Shape::state) return {};  // from files
-  if (std::string wrong = why_no_shape(spec, dimension); !wrong.empty()) return wrong;
+  if (is_from_file(spec.shape)) return {};
   BodyPlace place{{grid.length[0] / 2, grid.length[1] / 2, grid.length[2] / 2}, spec.orientation};
-  if (is_anchored(spec.shape) && spec.placement != Placement::one) return "slabs and tubes are placed once";
   Placing placing(spec, grid, kept, places);
   if (spec.shape == Shape::slab) {
     place.centre[spec.axis] = (spec.interval[0] + spec.interval[1]) / 2;

@@ -40,12 +40,11 @@ struct KeptBodies {
 };
 
 /// Finds the bodies of a species in order and stores in `places` those that `kept` selects. Returns an empty string, or
-/// one sentence on the error: an impossible shape, an invalid line of the file, a body that is outside the domain,
-/// longer than it or reaches into a wall (slabs, cylinders and tubes may), or a lumen that leaves the domain. A list
-/// has rows x,y,z or x,y,z,angle_x,angle_y,angle_z (base/number_rows.hpp), optionally preceded by their number; the
-/// angles of a row replace the species' orientation. A lattice has its centres at (i + 1/2) L/n plus jitter. A slab
-/// fills its interval; shapes from files place nothing. With a list, which rank 0 reads, it is collective over all
-/// ranks.
+/// an error of one line that names the option: an invalid line of the file, a body that is outside the domain, longer
+/// than it or reaches into a wall (slabs, cylinders and tubes may), or a lumen that leaves the domain. A list has rows
+/// x,y,z or x,y,z,angle_x,angle_y,angle_z (base/number_rows.hpp), optionally preceded by their number; the angles of a
+/// row replace the species' orientation. A lattice has its centres at (i + 1/2) L/n plus jitter. A slab fills its
+/// interval; shapes from files place nothing. With a list, which rank 0 reads, it is collective over all ranks.
 std::string place_bodies(const SpeciesSpec &spec, const DomainShape &grid, Places *places, const KeptBodies &kept = {});
 
 }  // namespace eulastic

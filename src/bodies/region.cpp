@@ -8,14 +8,13 @@ namespace eulastic {
 Region::Region(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places, const SpeciesSpec *vessel,
                const SolidBodies &solids, const DomainShape &grid, double margin)
     : grid_(grid),
-      dimension_(grid.cells[2] == 1 ? 2 : 3),
+      dimension_(grid.dimension()),
       vessel_(vessel),
       solids_(solids),
       margin_(margin * (1 - 1e-9)),  // bodies exactly at the margin count as inside despite round-off
       high_(grid.length) {
   cylinder_shapes_.reserve(species.size());  // bodies keep pointers to its elements
-  for (int d = 0; d < dimension_; ++d) volume_ *= grid.length[d];
-  volume_ -= solids.volume;
+  volume_ = grid.volume() - solids.volume;
   for (std::size_t s = 0; s < species.size(); ++s) {
     const SpeciesSpec &other = species[s];
     if (other.shape == Shape::slab) {

@@ -38,7 +38,7 @@ private:
   const SolidBodies &solids_;
   double margin_;
   Real3 low_{}, high_{};
-  double volume_ = 1;
+  double volume_;
   std::vector<const SpeciesSpec *> slabs_;
   std::vector<ConvexBody> cylinder_shapes_;
   std::vector<PlacedConvex> cylinders_;

@@ -38,7 +38,7 @@ public:
              const std::vector<Real3> &orientations, std::size_t count)
       : spec_(spec),
         grid_(grid),
-        dimension_(grid.cells[2] == 1 ? 2 : 3),
+        dimension_(grid.dimension()),
         region_(region),
         others_(others),
         orientations_(orientations),

@@ -20,7 +20,6 @@ constexpr std::size_t most_single = 20000;  // above this number bodies start as
 constexpr double block_bodies = 3000;
 constexpr double small_turn = 25;   // degrees
 constexpr double small_step = 0.3;  // in inner radii
-constexpr std::size_t nobody = static_cast<std::size_t>(-1);
 
 // Returns the angles about x, y, z of a rotation, in degrees; the inverse of rotation().
 Real3 angles(const Rotation &q) {
@@ -42,17 +41,12 @@ std::vector<Real3> orientations(const SpeciesSpec &spec, int dimension) {
   return {{}, {90, 0, 0}, {0, 0, 90}, {0, 90, 0}};
 }
 
-// As seed_bodies(); `dense`: bodies that do not fit at random are relaxed.
-std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
-                 const SolidBodies &solids, const std::vector<Places> &earlier, bool dense,
-                 std::vector<BodyPlace> *places);
-
 class Seeding {
 public:
   Seeding(const SpeciesSpec &spec, const DomainShape &grid, const Region &region, Crowd *crowd, const ConvexBody &shape)
       : spec_(spec),
         grid_(grid),
-        dimension_(grid.cells[2] == 1 ? 2 : 3),
+        dimension_(grid.dimension()),
         region_(region),
         crowd_(*crowd),
         shape_(shape),
@@ -68,15 +62,15 @@ public:
       sites = find_packing(region_, crowd_, grid_, shape_, orientations(spec_, dimension_), count + count / 2);
     places->clear();
     places->reserve(count);
-    for (std::size_t s = 0; s < sites.size() && places->size() < count;
-         ++s) {  // in order, so that neighbours stay close in memory
+    // In order, so that neighbours stay close in memory.
+    for (std::size_t s = 0; s < sites.size() && places->size() < count; ++s) {
       if (random_.below(sites.size() - s) >= count - places->size()) continue;
       places->push_back(sites[s]);
       crowd_.add(convex(sites[s]));
     }
     for (int failures = 0; places->size() < count && failures < insertions;) {
       const BodyPlace place = anywhere();
-      failures = fits(place, nobody) ? 0 : failures + 1;
+      failures = fits(place) ? 0 : failures + 1;
       if (failures > 0) continue;
       places->push_back(place);
       crowd_.add(convex(place));
@@ -87,7 +81,7 @@ public:
 
 private:
   PlacedConvex convex(const BodyPlace &place) const { return {&shape_, place.centre, rotation(place.orientation)}; }
-  bool fits(const BodyPlace &place, std::size_t except) const {
+  bool fits(const BodyPlace &place, std::size_t except = Crowd::nobody) const {
     const PlacedConvex body = convex(place);
     return region_.holds(body) && crowd_.has_room_for(body, except);
   }
@@ -133,15 +127,14 @@ private:
     std::vector<BodyPlace> places, sites;
     for (const double more : {1.15, 1.05}) {  // some copies overlap walls and earlier species
       spec.number = static_cast<long>(std::ceil(more * double(count) * volume / region_.volume()));
-      if (!seed({spec}, 0, block, {}, {}, false, &places).empty()) continue;
+      if (!seed_bodies({spec}, 0, block, {}, {}, &places, false).empty()) continue;
       sites.clear();
-      for (int k = 0; k < copies[2]; ++k)
-        for (int j = 0; j < copies[1]; ++j)
-          for (int i = 0; i < copies[0]; ++i)
-            for (BodyPlace place : places) {
-              for (int d = 0; d < dimension_; ++d) place.centre[d] += Int3{i, j, k}[d] * block.length[d];
-              if (fits(place, nobody)) sites.push_back(place);
-            }
+      for_points({{}, copies}, [&](int i, int j, int k) {
+        for (BodyPlace place : places) {
+          for (int d = 0; d < dimension_; ++d) place.centre[d] += Int3{i, j, k}[d] * block.length[d];
+          if (fits(place)) sites.push_back(place);
+        }
+      });
       if (sites.size() >= count) return sites;
     }
     return {};
@@ -179,9 +172,6 @@ private:
   std::size_t first_;  // index of this species' first body in the crowd
 };
 
-// Whether bodies of this shape are finite and go into bins; infinite ones are part of the region.
-bool is_finite(Shape shape) { return shape == Shape::sphere || shape == Shape::ellipsoid || shape == Shape::biconcave; }
-
 std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t placed, double hematocrit) {
   const std::string gap = spec.gap > 0 ? print(", or a -%s_gap below %.3g", spec.name.c_str(), spec.gap) : "";
   return print("-%s_%s: %zu bodies do not fit; %zu could be placed, hematocrit %.4g; accepted: fewer bodies",
@@ -189,22 +179,24 @@ std::string too_many(const SpeciesSpec &spec, std::size_t count, std::size_t pla
          gap;
 }
 
-std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
-                 const SolidBodies &solids, const std::vector<Places> &earlier, bool dense,
-                 std::vector<BodyPlace> *places) {
+}  // namespace
+
+std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
+                        const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places,
+                        bool relax) {
   const SpeciesSpec &spec = species[which];
-  const int dimension = grid.cells[2] == 1 ? 2 : 3;
-  if (const std::string wrong = why_no_shape(spec, dimension); !wrong.empty())
-    return "-" + spec.name + "_shape: " + wrong;
+  const int dimension = grid.dimension();
   const SpeciesSpec *vessel = nullptr;
   bool found = spec.inside.empty();
   for (const SpeciesSpec &other : species) {
     found = found || (other.shape == Shape::voxels && spec.inside == other.name);  // all bodies avoid its wall
     if (!is_tube(other.shape) || !(spec.inside.empty() || spec.inside == other.name)) continue;
-    if (vessel) return "-" + spec.name + "_inside: must name one of the tubes";
+    if (vessel) return "-" + spec.name + "_inside: there are several tubes; accepted: the name of one of them";
     vessel = &other;
   }
-  if (!vessel && !found) return "-" + spec.name + "_inside: " + spec.inside + " is not a species of tubes or voxels";
+  if (!vessel && !found)
+    return "-" + spec.name + "_inside: " + spec.inside +
+           " is not a species of tubes or voxels; accepted: the name of one";
   const double margin = spec.is_membrane() ? std::max(grid.longest_spacing() - spec.gap / 2, 0.0) : 0;
   const Region region(species, earlier, vessel, solids, grid, margin);
   const double body = shape_volume(spec, dimension);
@@ -222,27 +214,20 @@ std::string seed(const std::vector<SpeciesSpec> &species, std::size_t which, con
     const bool own = s == which;
     shapes.emplace_back(species[s], dimension,
                         own || species[s].placement == Placement::random ? species[s].gap / 2 : 0);
-    if (!own && !is_finite(species[s].shape)) continue;
+    if (!own && !is_closed(species[s].shape)) continue;  // part of the region
     widest = std::max(widest, 2 * shapes.back().outer_radius());
     if (!own) all += earlier[s].count;
   }
   Crowd crowd(grid, widest, all);
   for (std::size_t s = 0; s < which; ++s)
-    if (is_finite(species[s].shape))
+    if (is_closed(species[s].shape))
       for (const BodyPlace &place : earlier[s].known)
         crowd.add({&shapes[s], place.centre, rotation(place.orientation)});
   const Crowd others = crowd;
   std::size_t placed = Seeding(spec, grid, region, &crowd, shapes[which]).place(count, places);
-  if (placed < count && dense)
+  if (placed < count && relax)
     placed = std::max(placed, relax_crowd(spec, grid, region, others, orientations(spec, dimension), count, places));
   return placed < count ? too_many(spec, count, placed, placed > 0 ? double(placed) * body / region.volume() : 0) : "";
-}
-
-}  // namespace
-
-std::string seed_bodies(const std::vector<SpeciesSpec> &species, std::size_t which, const DomainShape &grid,
-                        const SolidBodies &solids, const std::vector<Places> &earlier, std::vector<BodyPlace> *places) {
-  return seed(species, which, grid, solids, earlier, true, places);
 }
 
 }  // namespace eulastic

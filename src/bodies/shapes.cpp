@@ -171,7 +171,7 @@ double lumen_radius(const SpeciesSpec &spec, double s) {
 }
 
 double lumen_volume(const SpeciesSpec &spec, const DomainShape &grid) {
-  const bool flat = grid.cells[2] == 1;
+  const bool flat = grid.dimension() == 2;
   const double r = spec.radius, length = flat && spec.axis == 2 ? 1 : grid.length[spec.axis];
   const double depth = r - lumen_radius(spec, 0), throat = spec.throat_length;
   if (flat && spec.axis != 2) return 2 * (r * length - depth * throat / 2);
@@ -179,7 +179,7 @@ double lumen_volume(const SpeciesSpec &spec, const DomainShape &grid) {
 }
 
 double lumen_resistance(const SpeciesSpec &spec, const DomainShape &grid) {
-  const bool flat = grid.cells[2] == 1;
+  const bool flat = grid.dimension() == 2;
   const auto inverse = [flat](double r) { return flat ? 1.5 / (r * r * r) : 8 / (pi * r * r * r * r); };
   const double length = grid.length[spec.axis];
   if (spec.shape != Shape::constricted_tube) return length * inverse(spec.radius);
@@ -190,33 +190,14 @@ double lumen_resistance(const SpeciesSpec &spec, const DomainShape &grid) {
 }
 
 double volume_in_box(const SpeciesSpec &spec, const DomainShape &grid) {
-  const int dimension = grid.cells[2] == 1 ? 2 : 3;
-  double box = 1, factor = 1;
-  for (int d = 0; d < dimension; ++d) box *= grid.length[d];
+  const int dimension = grid.dimension();
+  const double box = grid.volume();
   if (is_tube(spec.shape)) return box - lumen_volume(spec, grid);
-  if (spec.shape == Shape::cylinder && spec.axis < dimension) factor = grid.length[spec.axis];
   if (spec.shape == Shape::slab)
     return box / grid.length[spec.axis] *
            (std::min(grid.length[spec.axis], spec.interval[1]) - std::max(0.0, spec.interval[0]));
-  return factor * shape_volume(spec, dimension);
-}
-
-std::string why_no_shape(const SpeciesSpec &spec, int dimension) {
-  const bool round = spec.shape != Shape::ellipsoid && spec.shape != Shape::slab && spec.shape != Shape::state;
-  if (round && !(spec.radius > 0)) return "its radius must be positive";
-  if (spec.shape == Shape::ellipsoid)
-    for (int d = 0; d < dimension; ++d)
-      if (!(spec.semi_axes[d] > 0)) return "its semi-axes must be positive";
-  if (spec.shape == Shape::slab && !(spec.interval[1] > spec.interval[0]))
-    return "its interval must be given as low,high with low < high";
-  if (spec.shape == Shape::constricted_tube && !(spec.throat_radius > 0 && spec.throat_radius < spec.radius))
-    return "its throat must be narrower than its radius";
-  if (spec.shape == Shape::constricted_tube && !(spec.throat_length > 0)) return "its throat must have a length";
-  if (spec.axis < 0 || spec.axis > 2) return "its axis must be x, y or z";
-  const bool along =
-      spec.shape == Shape::biconcave || spec.shape == Shape::slab || spec.shape == Shape::constricted_tube;
-  if (dimension == 2 && spec.axis == 2 && along) return "its axis must be x or y in 2-D";
-  return {};
+  const bool extends = spec.shape == Shape::cylinder && spec.axis < dimension;
+  return (extends ? grid.length[spec.axis] : 1) * shape_volume(spec, dimension);
 }
 
 }  // namespace eulastic

@@ -60,7 +60,5 @@ double lumen_volume(const SpeciesSpec &spec, const DomainShape &grid);
 /// Returns the pressure drop along a tube through the domain, per flow rate and viscosity, by Poiseuille's law in every
 /// cross section: 8/pi times the integral of R^-4; in 2-D, for a channel, 3/2 times that of R^-3 per depth.
 double lumen_resistance(const SpeciesSpec &spec, const DomainShape &grid);
-/// Returns an empty string, or one sentence on why this shape's sizes give no body in `dimension` dimensions.
-std::string why_no_shape(const SpeciesSpec &spec, int dimension);
 
 }  // namespace eulastic

@@ -7,7 +7,7 @@ namespace {
 
 ConvexBody cell_of(const DomainShape &grid) {
   Real3 half{};
-  for (int d = 0; d < (grid.cells[2] == 1 ? 2 : 3); ++d) half[d] = grid.length[d] / grid.cells[d] / 2;
+  for (int d = 0; d < grid.dimension(); ++d) half[d] = grid.spacing(d) / 2;
   return ConvexBody(half);
 }
 
@@ -15,11 +15,11 @@ ConvexBody cell_of(const DomainShape &grid) {
 
 SolidMask::SolidMask(const DomainShape &grid)
     : grid_(grid),
-      dimension_(grid.cells[2] == 1 ? 2 : 3),
+      dimension_(grid.dimension()),
       words_((std::size_t(grid.cells[0]) + 63) / 64),
       bits_(words_ * grid.cells[1] * grid.cells[2]),
       cell_(cell_of(grid)) {
-  for (int d = 0; d < 3; ++d) spacing_[d] = grid.length[d] / grid.cells[d];
+  for (int d = 0; d < 3; ++d) spacing_[d] = grid.spacing(d);
 }
 
 void SolidMask::add(const CellWindow &window, ConstView fraction) {

@@ -19,6 +19,12 @@ enum class Shape { sphere, biconcave, ellipsoid, cylinder, slab, tube, constrict
 constexpr bool is_tube(Shape shape) { return shape == Shape::tube || shape == Shape::constricted_tube; }
 /// Whether bodies of a shape are anchored unless -NAME_anchored says otherwise.
 constexpr bool is_anchored(Shape shape) { return shape == Shape::slab || is_tube(shape); }
+/// Whether bodies of a shape come from a file.
+constexpr bool is_from_file(Shape shape) { return shape == Shape::voxels || shape == Shape::state; }
+/// Whether a shape is finite and given by its sizes.
+constexpr bool is_closed(Shape shape) {
+  return shape == Shape::sphere || shape == Shape::biconcave || shape == Shape::ellipsoid;
+}
 enum class Placement { one, list, lattice, random };
 /// How bodies of one species meet: each in a box of its own, so that they never merge, or all in one phase of the grid.
 enum class Contact { separate, merge };

@@ -3,9 +3,19 @@
 
 #include "grid/box.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace eulastic {
+
+/// Returns the global cell that contains a position in the domain.
+inline Int3 cell_of(const Box &box, const Real3 &position) {
+  Int3 cell{};
+  for (int d = 0; d < box.dimension(); ++d)
+    cell[d] = std::clamp(static_cast<int>(std::floor(position[d] / box.spacing()[d])), 0, box.domain_cells()[d] - 1);
+  return cell;
+}
 
 /// Returns the references wrapped into the domain along periodic directions, as offset() needs them.
 inline std::vector<Int3> within_box(const Box &box, std::vector<Int3> references) {

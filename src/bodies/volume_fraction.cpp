@@ -42,7 +42,7 @@ double half_space_fraction(double level, const Real3 &slopes) noexcept {
 
 PlacedBody::PlacedBody(const Surface &surface, const DomainShape &grid, const BodyPlace &place)
     : surface_(surface),
-      dimension_(grid.cells[2] == 1 ? 2 : 3),
+      dimension_(grid.dimension()),
       cells_(grid.cells),
       spacing_{},
       middle_{},
@@ -150,20 +150,18 @@ RigidMass moments(const Surface &surface, int dimension) {
   }
   const PlacedBody body(surface, box, {{box.length[0] / 2, box.length[1] / 2, box.length[2] / 2}, {}});
   RigidMass sum;
-  for (int k = 0; k < box.cells[2]; ++k)
-    for (int j = 0; j < cells; ++j)
-      for (int i = 0; i < cells; ++i) {
-        const Int3 cell{i, j, k};
-        const double part = body.fraction(cell) * volume;
-        Real3 r{};
-        for (int d = 0; d < dimension; ++d) r[d] = (cell[d] + 0.5 - 0.5 * cells) * h[d];
-        sum.volume += part;
-        for (int d = 0; d < dimension; ++d) sum.second[d] += part * (r[d] * r[d] + h[d] * h[d] / 12);
-        for (int d = 0; d < 3; ++d) {
-          sum.first[d] += part * r[d];
-          sum.second[3 + d] += part * r[(d + 1) % 3] * r[(d + 2) % 3];
-        }
-      }
+  for_points({{}, box.cells}, [&](int i, int j, int k) {
+    const Int3 cell{i, j, k};
+    const double part = body.fraction(cell) * volume;
+    Real3 r{};
+    for (int d = 0; d < dimension; ++d) r[d] = (cell[d] + 0.5 - 0.5 * cells) * h[d];
+    sum.volume += part;
+    for (int d = 0; d < dimension; ++d) sum.second[d] += part * (r[d] * r[d] + h[d] * h[d] / 12);
+    for (int d = 0; d < 3; ++d) {
+      sum.first[d] += part * r[d];
+      sum.second[3 + d] += part * r[(d + 1) % 3] * r[(d + 2) % 3];
+    }
+  });
   return sum;
 }
 

@@ -49,10 +49,28 @@ struct DomainShape {
   int dimension() const { return cells[2] == 1 && !open[2][0] && !open[2][1] ? 2 : 3; }
   /// Whether direction d has boundaries, of any kind (field/boundaries.hpp), rather than being periodic.
   bool is_wall(int d) const { return d < dimension() && boundary[d] == Boundary::wall; }
+  double spacing(int d) const { return length[d] / cells[d]; }
   double longest_spacing() const {
     double longest = 0;
-    for (int d = 0; d < (cells[2] == 1 ? 2 : 3); ++d) longest = std::max(longest, length[d] / cells[d]);
+    for (int d = 0; d < dimension(); ++d) longest = std::max(longest, spacing(d));
     return longest;
+  }
+  double shortest_spacing() const {
+    double shortest = spacing(0);
+    for (int d = 1; d < dimension(); ++d) shortest = std::min(shortest, spacing(d));
+    return shortest;
+  }
+  double volume() const {  ///< an area in 2-D
+    double product = 1;
+    for (int d = 0; d < dimension(); ++d) product *= length[d];
+    return product;
+  }
+  /// The area of a boundary of direction d; in 2-D its length.
+  double side_area(int d) const {
+    double product = 1;
+    for (int e = 0; e < dimension(); ++e)
+      if (e != d) product *= length[e];
+    return product;
   }
 };
 

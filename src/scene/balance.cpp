@@ -61,25 +61,21 @@ private:
   void add(const Phase &phase) {
     const double factor = phase_work(phase.material, false);
     if (factor == 0) return;
-    const Int3 &n = domain_.cells();
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) {
-        const OccupiedRows::Span span = phase.rows.span(j, k);
-        cost(j, k) += factor * std::max(0, std::min(span.end, n[0]) - std::max(span.begin, 0));
-      }
+    for (const Segment &row : domain_.rows()) {
+      const OccupiedRows::Span span = phase.rows.span(row.j, row.k);
+      cost(row.j, row.k) += factor * std::max(0, std::min(span.end, row.i_end) - std::max(span.begin, 0));
+    }
   }
 
   // Over the planes of each unit along d.
   PetscErrorCode sum_planes(int d, std::vector<double> *sums) {
     PetscFunctionBeginUser;
-    const Int3 &n = domain_.cells();
     const int units = domain_.domain_cells()[d] / unit_[d];  // the last one may have more cells
     sums->assign(units, 0);
-    for (int k = 0; k < n[2]; ++k)
-      for (int j = 0; j < n[1]; ++j) {
-        const int plane = domain_.layout().begin[d] + (d == 1 ? j : k);
-        (*sums)[std::min(plane / unit_[d], units - 1)] += cost(j, k);
-      }
+    for (const Segment &row : domain_.rows()) {
+      const int plane = domain_.layout().begin[d] + (d == 1 ? row.j : row.k);
+      (*sums)[std::min(plane / unit_[d], units - 1)] += cost(row.j, row.k);
+    }
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums->data(), units, MPI_DOUBLE, MPI_SUM, domain_.comm()));
     PetscFunctionReturn(0);
   }
@@ -105,36 +101,20 @@ private:
   // The heaviest box at every position along y and z, if ranks had the cells of split_.
   PetscErrorCode heaviest_boxes(std::array<std::vector<double>, 3> *most) {
     PetscFunctionBeginUser;
-    const Int3 &begin = domain_.layout().begin, &n = domain_.cells();
-    const Int3 me = split_.position_of(domain_.rank());
-    std::vector<PetscSFNode> owners;
-    std::vector<double> parts;
-    const int y0 = split_.position_along(1, begin[1]), y1 = split_.position_along(1, begin[1] + n[1] - 1);
-    const int z0 = split_.position_along(2, begin[2]), z1 = split_.position_along(2, begin[2] + n[2] - 1);
-    for (int z = z0; z <= z1; ++z)
-      for (int y = y0; y <= y1; ++y) {
-        double sum = 0;
-        for (int k = std::max(split_.starts[2][z], begin[2]); k < std::min(split_.starts[2][z + 1], begin[2] + n[2]);
-             ++k)
-          for (int j = std::max(split_.starts[1][y], begin[1]); j < std::min(split_.starts[1][y + 1], begin[1] + n[1]);
-               ++j)
-            sum += cost(j - begin[1], k - begin[2]);
-        owners.push_back({split_.rank_at({me[0], y, z}), 0});
-        parts.push_back(sum);
-      }
-    SfHandle boxes;
-    double box = 0;
-    PetscCall(PetscSFCreate(domain_.comm(), boxes.put()));
-    PetscCall(PetscSFSetGraph(boxes.get(), 1, static_cast<PetscInt>(owners.size()), nullptr, PETSC_OWN_POINTER,
-                              owners.data(), PETSC_COPY_VALUES));
-    PetscCall(PetscSFReduceBegin(boxes.get(), MPIU_REAL, parts.data(), &box, MPI_SUM));
-    PetscCall(PetscSFReduceEnd(boxes.get(), MPIU_REAL, parts.data(), &box, MPI_SUM));
+    const Int3 &begin = domain_.layout().begin;
+    const int x = split_.position_of(domain_.rank())[0];
+    std::vector<double> boxes(domain_.ranks(), 0);
+    for (const Segment &row : domain_.rows()) {
+      const int y = split_.position_along(1, begin[1] + row.j), z = split_.position_along(2, begin[2] + row.k);
+      boxes[split_.rank_at({x, y, z})] += cost(row.j, row.k);
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, boxes.data(), domain_.ranks(), MPI_DOUBLE, MPI_SUM, domain_.comm()));
     for (int d = 1; d < 3; ++d) {
-      std::vector<double> &heaviest = (*most)[d];
-      heaviest.assign(domain_.processors(d), 0);
-      heaviest[me[d]] = box;
-      PetscCallMPI(
-          MPI_Allreduce(MPI_IN_PLACE, heaviest.data(), domain_.processors(d), MPI_DOUBLE, MPI_MAX, domain_.comm()));
+      (*most)[d].assign(domain_.processors(d), 0);
+      for (int rank = 0; rank < domain_.ranks(); ++rank) {
+        double &heaviest = (*most)[d][split_.position_of(rank)[d]];
+        heaviest = std::max(heaviest, boxes[rank]);
+      }
     }
     PetscFunctionReturn(0);
   }

@@ -10,8 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 
 namespace eulastic {
@@ -20,51 +18,42 @@ namespace {
 class Report {
 public:
   std::string text;
-  __attribute__((format(printf, 3, 4))) void line(const std::string &name, const char *format, ...) {
-    char value[256];
-    va_list list;
-    va_start(list, format);
-    std::vsnprintf(value, sizeof value, format, list);
-    va_end(list);
-    text += name + ": " + value + "\n";
-  }
+  void line(const std::string &name, const std::string &value) { text += name + ": " + value + "\n"; }
   void limit(const std::string &name, double dt) {
-    if (std::isfinite(dt))
-      line("dt limit, " + name, "%.6g", dt);
-    else
-      line("dt limit, " + name, "none");
+    line("dt limit, " + name, std::isfinite(dt) ? print("%.6g", dt) : "none");
   }
 };
 
 class Check {
 public:
-  explicit Check(const Config &config) : config_(config), dimension_(config.grid.cells[2] == 1 ? 2 : 3) {
-    for (int d = 0; d < dimension_; ++d) spacing_[d] = config.grid.length[d] / config.grid.cells[d];
+  explicit Check(const Config &config) : config_(config), dimension_(config.grid.dimension()) {
+    for (int d = 0; d < dimension_; ++d) spacing_[d] = config.grid.spacing(d);
   }
 
   void grid(Report &report, int ranks) const {
     const Int3 &n = config_.grid.cells, parts = Domain::decompose(config_.grid, ranks);
     const double cells = double(n[0]) * n[1] * n[2];
-    report.line("cells", "%d x %d x %d = %.0f", n[0], n[1], n[2], cells);
+    report.line("cells", print("%d x %d x %d = %.0f", n[0], n[1], n[2], cells));
     if (dimension_ == 2)
-      report.line("spacing", "%g x %g", spacing_[0], spacing_[1]);
+      report.line("spacing", print("%g x %g", spacing_[0], spacing_[1]));
     else
-      report.line("spacing", "%g x %g x %g", spacing_[0], spacing_[1], spacing_[2]);
-    report.line("ranks", "%d x %d x %d = %d, about %.0f cells each", parts[0], parts[1], parts[2], ranks,
-                cells / ranks);
+      report.line("spacing", print("%g x %g x %g", spacing_[0], spacing_[1], spacing_[2]));
+    report.line("ranks",
+                print("%d x %d x %d = %d, about %.0f cells each", parts[0], parts[1], parts[2], ranks, cells / ranks));
     if (ranks > 1) boxes(report, parts);
     if (cells > std::numeric_limits<PetscInt>::max())
-      report.line("warning",
-                  "needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
-                  double(std::numeric_limits<PetscInt>::max()));
+      report.line(
+          "warning",
+          print("needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
+                double(std::numeric_limits<PetscInt>::max())));
     if (ranks > 1 && config_.method.pressure == PressureKind::acm && !config_.method.is_single_acm_step() &&
         config_.method.acm_coarse)
-      report.line("V-cycle", "%s", Multigrid::shares(Domain::planned(config_.grid, ranks)).c_str());
+      report.line("V-cycle", Multigrid::shares(Domain::planned(config_.grid, ranks)));
     const double bytes = bytes_per_rank(config_, parts);
-    report.line("memory", "%.4g GB for fields, %.4g GB per rank; this machine has %.4g GB", 1e-9 * bytes * ranks,
-                1e-9 * bytes, 1e-9 * memory_limit());
+    report.line("memory", print("%.4g GB for fields, %.4g GB per rank; this machine has %.4g GB", 1e-9 * bytes * ranks,
+                                1e-9 * bytes, 1e-9 * memory_limit()));
     if (const double boxed = bytes_in_boxes(config_); boxed > 0)
-      report.line("bodies in boxes (estimate)", "%.4g GB per rank, part of the memory", 1e-9 * boxed / ranks);
+      report.line("bodies in boxes (estimate)", print("%.4g GB per rank, part of the memory", 1e-9 * boxed / ranks));
   }
 
   void boxes(Report &report, const Int3 &parts) const {
@@ -77,38 +66,39 @@ public:
       in_memory *= box[d] + (d < dimension_ ? 2 * config_.grid.ghosts : 0);
       around *= std::min(parts[d], 3);
     }
-    report.line("largest box of a rank", "%d x %d x %d cells, %.3g times as many with the ghosts in memory", box[0],
-                box[1], box[2], in_memory / own);
-    report.line("exchange of the velocity", "%d neighbours, %.3g values per cell and component, %.4g MB for each rank",
-                around - 1, travelling / own - 1, 8e-6 * dimension_ * (travelling - own));
+    report.line("largest box of a rank", print("%d x %d x %d cells, %.3g times as many with the ghosts in memory",
+                                               box[0], box[1], box[2], in_memory / own));
+    report.line("exchange of the velocity",
+                print("%d neighbours, %.3g values per cell and component, %.4g MB for each rank", around - 1,
+                      travelling / own - 1, 8e-6 * dimension_ * (travelling - own)));
   }
 
   void bodies(Report &report) const {
-    double box = 1, walls = 0, cells = 0;
-    for (int d = 0; d < dimension_; ++d) box *= config_.grid.length[d];
+    const double box = config_.grid.volume();
+    double walls = 0, cells = 0;
     for (std::size_t s = 0; s < config_.species.size(); ++s) {
       const SpeciesSpec &spec = config_.species[s];
       if (spec.shape == Shape::state) {
-        report.line("species " + spec.name, "from %s", config_.initial_state.c_str());
+        report.line("species " + spec.name, print("from %s", config_.initial_state.c_str()));
         continue;
       }
       const bool file = spec.shape == Shape::voxels;
       const auto [count, volume] = count_bodies(config_, s);
       (is_wall_species(config_, s) ? walls : cells) += count * volume;
-      report.line("species " + spec.name, "%.0f bodies of %s %g, fraction of the box %.6g%s%s", count,
-                  dimension_ == 2 ? "area" : "volume", volume, count * volume / box, file ? ", from " : "",
-                  file ? spec.voxels.path.c_str() : "");
+      report.line("species " + spec.name, print("%.0f bodies of %s %g, fraction of the box %.6g%s%s", count,
+                                                dimension_ == 2 ? "area" : "volume", volume, count * volume / box,
+                                                file ? ", from " : "", file ? spec.voxels.path.c_str() : ""));
     }
     if (cells > 0)
-      report.line("hematocrit", "%.6g%s", cells / (box - walls),
-                  walls > 0 ? " (of the box less slabs, tubes, vessels)" : "");
+      report.line("hematocrit",
+                  print("%.6g%s", cells / (box - walls), walls > 0 ? " (of the box less slabs, tubes, vessels)" : ""));
   }
 
   void flow(Report &report) const {
     const FlowScale scale = flow_scale(config_);
     const double nu = config_.fluid.kinematic_viscosity(), speed = scale.largest_speed();
     const auto estimate = [&](const std::string &name, std::optional<double> value, const std::string &how) {
-      report.text += name + ": " + (value ? print("%.6g", *value) : "unknown") + how + "\n";
+      report.line(name, (value ? print("%.6g", *value) : "unknown") + how);
     };
     const auto capillary = [&](const SpeciesSpec &spec, double per_rate, const char *what) {
       std::optional<double> number;
@@ -116,12 +106,12 @@ public:
       estimate("capillary number of " + spec.name, number, std::string(" (viscosity x shear rate ") + what + ")");
     };
     if (speed == 0) {
-      report.line("flow", "none (no force, pressure, moving wall, inlet or initial velocity)%s",
-                  stretched() ? ", but for what stretched bodies or -initial_state drive" : "");
+      report.line("flow", print("none (no force, pressure, moving wall, inlet or initial velocity)%s",
+                                stretched() ? ", but for what stretched bodies or -initial_state drive" : ""));
     } else {
       std::optional<double> reynolds;
       if (!scale.speed_is_bound && nu > 0) reynolds = speed * scale.length / nu;
-      report.line("velocity scale (estimate)", "%s%.6g", scale.speed_is_bound ? "less than " : "", speed);
+      report.line("velocity scale (estimate)", print("%s%.6g", scale.speed_is_bound ? "less than " : "", speed));
       estimate("shear rate (estimate)", scale.shear_rate, "");
       const std::string length = print(" (length %.6g)", scale.length);
       estimate("Reynolds number", reynolds, nu > 0 ? length : " (no viscosity)");
@@ -129,16 +119,16 @@ public:
     for (const SpeciesSpec &spec : config_.species) {
       const double modulus = spec.material().shear_modulus;
       if (modulus != spec.shear_modulus)
-        report.line("shear modulus of " + spec.name, "%.6g (at rest: 2 (c1 + c2))", modulus);
+        report.line("shear modulus of " + spec.name, print("%.6g (at rest: 2 (c1 + c2))", modulus));
       if (spec.viscosity)
-        report.line("viscosity of " + spec.name, "%.6g, %.6g times the fluid's", *spec.viscosity,
-                    *spec.viscosity / config_.fluid.viscosity);
+        report.line("viscosity of " + spec.name,
+                    print("%.6g, %.6g times the fluid's", *spec.viscosity, *spec.viscosity / config_.fluid.viscosity));
       if (modulus > 0 && speed > 0) capillary(spec, config_.fluid.viscosity / modulus, "/ shear modulus");
       const Membrane &membrane = spec.membrane;
       if (spec.is_membrane())
-        report.line("membrane of " + spec.name, "moduli of shear %.6g and of area %.6g, of bending %.6g",
-                    membrane.shear_modulus, membrane.largest_modulus() - membrane.shear_modulus,
-                    membrane.bending_modulus);
+        report.line("membrane of " + spec.name,
+                    print("moduli of shear %.6g and of area %.6g, of bending %.6g", membrane.shear_modulus,
+                          membrane.largest_modulus() - membrane.shear_modulus, membrane.bending_modulus));
       const Real3 &axes = spec.semi_axes;
       const double radius = spec.shape == Shape::ellipsoid ? std::cbrt(axes[0] * axes[1] * axes[2]) : spec.radius;
       if (spec.surface_tension > 0 && radius > 0 && speed > 0)
@@ -182,13 +172,13 @@ public:
       dt = config_.time.step;
       name = "-time_step";
       if (const char *broken = limits.exceeded_limit(dt))
-        report.line("warning", "-time_step %g exceeds the %s limit", dt, broken);
+        report.line("warning", print("-time_step %g exceeds the %s limit", dt, broken));
     }
     if (!std::isfinite(dt)) dt = config_.time.end, name = "-time_end: nothing limits it";
     double steps = std::ceil(config_.time.end / dt);
     if (config_.time.steps_max > 0) steps = std::min(steps, double(config_.time.steps_max));
-    report.line("time step (estimate)", "%.6g (%s)", dt, name);
-    report.line("steps (estimate)", "%.0f", steps);
+    report.line("time step (estimate)", print("%.6g (%s)", dt, name));
+    report.line("steps (estimate)", print("%.0f", steps));
     wall_time(report, steps, dt / limits.viscous, ranks, contrast.exists());
   }
 
@@ -213,8 +203,8 @@ private:
     if (seconds >= 100) time = seconds / 60, unit = "minutes";
     if (seconds >= 6000) time = seconds / 3600, unit = "hours";
     if (seconds >= 360000) time = seconds / 86400, unit = "days";
-    report.line("wall time (estimate)", "%.3g %s on %d core%s, %.2g us per cell, step and core", time, unit, cores,
-                cores > 1 ? "s" : "", 1e-3 * ns);
+    report.line("wall time (estimate)", print("%.3g %s on %d core%s, %.2g us per cell, step and core", time, unit,
+                                              cores, cores > 1 ? "s" : "", 1e-3 * ns));
   }
   bool has_rigid_bodies() const {
     return std::any_of(config_.species.begin(), config_.species.end(),

@@ -11,18 +11,11 @@
 namespace eulastic {
 namespace {
 
-double box_volume(const Config &config, int dimension) {
-  double volume = 1;
-  for (int d = 0; d < dimension; ++d) volume *= config.grid.length[d];
-  return volume;
-}
-
 // A body from a file that fills the box but for a lumen.
 bool is_vessel_of_file(const Config &config, std::size_t s) {
   const SpeciesSpec &spec = config.species[s];
-  const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
   return spec.shape == Shape::voxels &&
-         (spec.voxels.invert || count_bodies(config, s).total() > 0.5 * box_volume(config, dimension));
+         (spec.voxels.invert || count_bodies(config, s).total() > 0.5 * config.grid.volume());
 }
 
 // The largest velocity of a profile, whose mean is 1.
@@ -35,7 +28,7 @@ double largest_of_mean(const BoundaryCondition &side) {
 
 class Estimate {
 public:
-  explicit Estimate(const Config &config) : config_(config), dimension_(config.grid.cells[2] == 1 ? 2 : 3) {}
+  explicit Estimate(const Config &config) : config_(config), dimension_(config.grid.dimension()) {}
 
   FlowScale make() {
     find_length();
@@ -84,7 +77,7 @@ private:
       if (is_tube(spec.shape)) lumen_axis_ = spec.axis, lumen_ = 2 * spec.radius;
       if (!is_vessel_of_file(config_, s)) continue;
       lumen_axis_ = axis_of_vessels();
-      const double section = (box_volume(config_, dimension_) - count_bodies(config_, s).total()) / box[lumen_axis_];
+      const double section = (config_.grid.volume() - count_bodies(config_, s).total()) / box[lumen_axis_];
       lumen_ = dimension_ == 2 ? section : 2 * std::sqrt(std::max(section, 0.0) / M_PI);
     }
     if (lumen_ > 0) width = std::min(width, lumen_);
@@ -142,7 +135,7 @@ private:
   // What comes in fills what rigid bodies leave of a side, and what elastic walls leave of the box; developed it is at
   // most twice as fast in the middle, with the shear rate 8 U/D at the wall.
   void driven_by_inflow() {
-    const double box = box_volume(config_, dimension_);
+    const double box = config_.grid.volume();
     double free = 1;
     for (std::size_t s = 0; s < config_.species.size(); ++s)
       if (is_wall_species(config_, s) && config_.species[s].law != Law::rigid)

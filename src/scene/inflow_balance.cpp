@@ -54,20 +54,13 @@ double steepness(const Inflow &inflow) {
 
 }  // namespace
 
-double area_of_side(const Config &config, int d) {
-  double area = 1;
-  for (int e = 0; e < (config.grid.cells[2] == 1 ? 2 : 3); ++e)
-    if (e != d) area *= config.grid.length[e];
-  return area;
-}
-
 std::string check_inflow_balance(const Config &config) {
   std::vector<Inflow> inflows;
   std::string names;
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2; ++high) {
       if (config.sides[d][high].kind != BoundaryKind::inflow) continue;
-      inflows.push_back({&config.sides[d][high].given, area_of_side(config, d)});
+      inflows.push_back({&config.sides[d][high].given, config.grid.side_area(d)});
       names += (names.empty() ? "-boundary_" : ", -boundary_") + side_name(d, high);
     }
   const std::string way_out =

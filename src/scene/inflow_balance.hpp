@@ -5,8 +5,6 @@
 
 namespace eulastic {
 
-/// The area of a boundary of direction d; in 2-D its length.
-double area_of_side(const Config &config, int d);
 /// Without an open boundary the flow rates of all inflow boundaries must have the sum 0 at every time of the run, to
 /// round-off. Returns an error of one line, or nothing.
 std::string check_inflow_balance(const Config &config);

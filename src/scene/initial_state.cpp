@@ -10,12 +10,18 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace eulastic {
 namespace {
 
-// phi of a WENO5 run overshoots slightly; values further out are errors.
-constexpr double overshoot = 0.1;
+constexpr double overshoot = 0.1;  // of phi of a WENO5 run
+constexpr AcceptedValues finite_numbers{"finite numbers", [](double q) { return std::isfinite(q); }};
+constexpr AcceptedValues positive_numbers{"positive numbers", [](double q) { return std::isfinite(q) && q > 0; }};
+constexpr AcceptedValues zero_to_one{"0 ... 1", [](double q) { return q >= -overshoot && q <= 1 + overshoot; }};
+constexpr AcceptedValues ids{"0 and the ids of bodies", [](double q) {
+                               return q >= 0 && q <= std::numeric_limits<int>::max() && q == std::floor(q);
+                             }};
 const std::vector<TensorComponent> all_components = tensor_components(3);
 
 std::string tensor_name(const TensorComponent &c) { return "left_cauchy_green_" + c.name(); }
@@ -43,7 +49,8 @@ void for_high_wall(const Box &box, const Staggering &at, int d, View field, Visi
 }  // namespace
 
 PetscErrorCode InitialState::fail(const std::string &problem) const {
-  return fail_together(domain_->comm(), problem.empty() ? problem : config_->initial_state + ": " + problem);
+  const std::string source = "-initial_state: " + config_->initial_state + ": ";
+  return fail_together(domain_->comm(), problem.empty() ? problem : source + problem);
 }
 
 PetscErrorCode InitialState::open() {
@@ -59,17 +66,16 @@ PetscErrorCode InitialState::check_names() {
   PetscFunctionBeginUser;
   std::vector<std::string> flow{"velocity_x", "velocity_y", "velocity_z", "pressure"}, solid{"solid_fraction", "body"};
   for (const TensorComponent &c : all_components) solid.push_back(tensor_name(c));
+  std::set<std::string> known(flow.begin(), flow.end());
+  known.insert("velocity");  // of snapshots, for pictures
+  for (const std::string &base : solid) {
+    known.insert(base);
+    for (const SpeciesSpec &species : config_->species) known.insert(base + "_" + species.name);
+    if (config_->species.empty() && file_.has(base))
+      PetscCall(fail("dataset " + base + " belongs to a species; accepted: -species and its options as well"));
+  }
   for (const std::string &name : file_.datasets()) {
-    const auto is = [&](const std::string &known) { return name == known; };
-    if (name == "velocity" || name.rfind("wall_shear_stress", 0) == 0) continue;  // of snapshots, for pictures
-    bool known = std::any_of(flow.begin(), flow.end(), is);
-    for (const std::string &base : solid) {
-      if (name == base && config_->species.empty())
-        PetscCall(fail("dataset " + name + " belongs to a species; accepted: -species and its options as well"));
-      known = known || name == base;
-      for (const SpeciesSpec &species : config_->species) known = known || name == base + "_" + species.name;
-    }
-    if (!known)
+    if (known.count(name) == 0 && name.rfind("wall_shear_stress", 0) != 0)
       PetscCall(fail("unknown dataset " + name + "; accepted: " + join(flow, ", ") + ", " + join(solid, ", ") +
                      ", the latter also followed by _ and the name of a species"));
   }
@@ -98,33 +104,18 @@ bool InitialState::holds(const SpeciesSpec &species) const {
   return any;
 }
 
-PetscErrorCode InitialState::read(const std::string &name, const Staggering &staggering, Wanted wanted, View field) {
+PetscErrorCode InitialState::read(const std::string &name, const Staggering &staggering, const AcceptedValues &accepted,
+                                  View field) {
   PetscFunctionBeginUser;
   PetscCall(file_.read_field(*domain_, name, staggering, field));
-  const auto fine = [wanted](double q) {
-    if (wanted == Wanted::positive) return std::isfinite(q) && q > 0;
-    if (wanted == Wanted::fraction) return q >= -overshoot && q <= 1 + overshoot;
-    if (wanted == Wanted::label) return q >= 0 && q <= std::numeric_limits<int>::max() && q == std::floor(q);
-    return std::isfinite(q);
-  };
-  std::int64_t bad = std::numeric_limits<std::int64_t>::max();
-  double value = 0;
-  for_points(domain_->rows(), [&](int i, int j, int k) {
-    const std::int64_t index = global_index(*domain_, i, j, k);
-    if (fine(field(i, j, k)) || index > bad) return;
-    bad = index;
-    value = field(i, j, k);
-  });
+  const Int3 &first = domain_->layout().begin;
   std::string problem;
-  if (bad < std::numeric_limits<std::int64_t>::max()) {
-    const Int3 cell = cell_at(*domain_, bad);
-    problem = "dataset " + name + " [" + std::to_string(cell[2]) + ", " + std::to_string(cell[1]) + ", " +
-              std::to_string(cell[0]) + "] is " + to_text(value) + "; accepted: " +
-              (wanted == Wanted::positive   ? "positive numbers"
-               : wanted == Wanted::fraction ? "0 ... 1"
-               : wanted == Wanted::label    ? "0 and the ids of bodies"
-                                            : "finite numbers");
-  }
+  for_points(domain_->rows(), [&](int i, int j, int k) {
+    const double value = field(i, j, k);
+    if (!problem.empty() || accepted.has(value)) return;
+    problem = "dataset " + name + " [" + std::to_string(first[2] + k) + ", " + std::to_string(first[1] + j) + ", " +
+              std::to_string(first[0] + i) + "] is " + to_text(value) + "; accepted: " + accepted.text;
+  });
   PetscCall(fail(problem));
   PetscFunctionReturn(0);
 }
@@ -134,10 +125,10 @@ PetscErrorCode InitialState::read_constant(const std::string &name, double value
   PetscFunctionBeginUser;
   if (name.empty() || !file_.has(name)) PetscFunctionReturn(0);
   Field field(*domain_, 1);
-  PetscCall(read(name, at_centre, Wanted::finite, field[0]));
+  PetscCall(read(name, at_centre, finite_numbers, field[0]));
   bool same = true;
   for_points(domain_->rows(), [&](int i, int j, int k) { same = same && field[0](i, j, k) == value; });
-  PetscCall(fail(same ? std::string() : "dataset " + name + " must be " + to_text(value) + " everywhere in 2-D"));
+  PetscCall(fail(same ? std::string() : "dataset " + name + " in 2-D; accepted: " + to_text(value) + " everywhere"));
   PetscFunctionReturn(0);
 }
 
@@ -146,10 +137,10 @@ PetscErrorCode InitialState::read_flow(State *state) {
   if (!open_) PetscFunctionReturn(0);
   for (int c = 0; c < domain_->dimension(); ++c) {
     const std::string name = std::string("velocity_") + "xyz"[c];
-    if (file_.has(name)) PetscCall(read(name, at_face[c], Wanted::finite, state->velocity[c]));
+    if (file_.has(name)) PetscCall(read(name, at_face[c], finite_numbers, state->velocity[c]));
   }
   if (domain_->dimension() == 2) PetscCall(read_constant("velocity_z", 0));
-  if (file_.has("pressure")) PetscCall(read("pressure", at_centre, Wanted::finite, state->pressure[0]));
+  if (file_.has("pressure")) PetscCall(read("pressure", at_centre, finite_numbers, state->pressure[0]));
   PetscFunctionReturn(0);
 }
 
@@ -170,7 +161,7 @@ PetscErrorCode InitialState::read_tensor(const SpeciesSpec &species, Phase *phas
     const Staggering &at = own->at;
     // Edges on the high wall are part of the state; a file without them has them extrapolated.
     for (int d = 0; d < 3; ++d) for_high_wall(*domain_, at, d, field, [](double *q) { *q = missing; });
-    PetscCall(read(name, at, c.a == c.b ? Wanted::positive : Wanted::finite, field));
+    PetscCall(read(name, at, c.a == c.b ? positive_numbers : finite_numbers, field));
     for (int d = 0; d < 3; ++d)
       for_high_wall(*domain_, at, d, field, [s = field.stride(d)](double *q) {
         if (std::isnan(*q)) *q = 2 * q[-s] - q[-2 * s];
@@ -183,10 +174,11 @@ PetscErrorCode InitialState::read_phase(const SpeciesSpec &species, int first_la
   PetscFunctionBeginUser;
   const std::string fraction = open_ ? name_for("solid_fraction", species) : std::string();
   if (species.shape == Shape::state && fraction.empty())
-    PetscCall(fail("dataset solid_fraction is missing, and -" + species.name + "_shape was not given"));
+    PetscCall(
+        fail("dataset solid_fraction is missing; accepted: with this dataset, or with -" + species.name + "_shape"));
   if (!open_) PetscFunctionReturn(0);
   if (!fraction.empty()) {
-    PetscCall(read(fraction, at_centre, Wanted::fraction, phase->fraction[0]));
+    PetscCall(read(fraction, at_centre, zero_to_one, phase->fraction[0]));
     for_points(domain_->rows(),
                [phi = phase->fraction[0]](int i, int j, int k) { phi(i, j, k) = std::clamp(phi(i, j, k), 0.0, 1.0); });
     stretch_phase(*domain_, species, phase);
@@ -204,7 +196,7 @@ PetscErrorCode InitialState::read_bodies(const SpeciesSpec &species, int first_l
   if (name.empty()) {
     for_points(domain_->rows(), [&](int i, int j, int k) { label(i, j, k) = phi(i, j, k) > 0 ? first_label : 0; });
   } else {
-    PetscCall(read(name, at_centre, Wanted::label, label));
+    PetscCall(read(name, at_centre, ids, label));
     for_points(domain_->rows(), [&](int i, int j, int k) {
       const int body = static_cast<int>(label(i, j, k));
       if (body == 0) return;

@@ -13,6 +13,12 @@
 
 namespace eulastic {
 
+/// The values that a dataset may have.
+struct AcceptedValues {
+  const char *text;
+  bool (*has)(double value);
+};
+
 class InitialState {
 public:
   InitialState(const Config &config, const Domain &domain) : config_(&config), domain_(&domain) {}
@@ -31,10 +37,10 @@ public:
   bool has_bodies() const { return has_bodies_; }
 
 private:
-  enum class Wanted { finite, positive, fraction, label };
   PetscErrorCode check_names();
   std::string name_for(const std::string &base, const SpeciesSpec &species) const;
-  PetscErrorCode read(const std::string &name, const Staggering &staggering, Wanted wanted, View field);
+  PetscErrorCode read(const std::string &name, const Staggering &staggering, const AcceptedValues &accepted,
+                      View field);
   PetscErrorCode read_constant(const std::string &name, double value);
   PetscErrorCode read_tensor(const SpeciesSpec &species, Phase *phase);
   PetscErrorCode read_bodies(const SpeciesSpec &species, int first_label, Phase *phase, Places *places);

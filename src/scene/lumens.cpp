@@ -2,7 +2,6 @@
 
 #include "base/one_line.hpp"
 #include "bodies/shapes.hpp"
-#include "scene/inflow_balance.hpp"
 #include "scene/open_parts.hpp"
 
 #include <algorithm>
@@ -13,14 +12,12 @@ namespace {
 
 constexpr double least_cells = 8, most_reynolds = 1e4, round_off = 1e-9;
 
-bool flat(const Config &config) { return config.grid.cells[2] == 1; }
-
 std::string number(double value, int digits = 4) { return print("%.*g", digits, value); }
 
 // Smallest and largest prescribed volume per time of an inflow boundary.
 std::array<double, 2> given_flow(const Config &config, int d, int high) {
   const bool mean_of_open = !config.openings[d][high].velocity.empty();
-  const double area = area_of_side(config, d) * (mean_of_open ? config.open_parts[d][high].share : 1);
+  const double area = config.grid.side_area(d) * (mean_of_open ? config.open_parts[d][high].share : 1);
   auto range = config.sides[d][high].given.range();
   for (double &value : range) value *= area;
   return range;
@@ -58,8 +55,9 @@ std::string side_line(const Config &config, int d, int high) {
   const OpenPart &part = config.open_parts[d][high];
   const BoundaryKind kind = config.sides[d][high].kind;
   const char *what = kind == BoundaryKind::inflow ? "inflow" : kind == BoundaryKind::pressure ? "pressure" : "outflow";
-  std::string line = "boundary " + side_name(d, high) + ": " + what + ", open " + (flat(config) ? "length " : "area ") +
-                     number(part.area) + " of " + number(area_of_side(config, d));
+  std::string line = "boundary " + side_name(d, high) + ": " + what + ", open " +
+                     (config.grid.dimension() == 2 ? "length " : "area ") + number(part.area) + " of " +
+                     number(config.grid.side_area(d));
   if (part.lumens > 1) line += ", " + std::to_string(part.lumens) + " lumens, the widest";
   if (std::isfinite(part.width))
     line += std::string(part.lumens > 1 ? " " : ", lumen ") + number(part.width, 3) + " wide, " +
@@ -79,7 +77,7 @@ std::string side_line(const Config &config, int d, int high) {
 }  // namespace
 
 double largest_inflow(const Config &config, int d, int high) {
-  return largest(given_flow(config, d, high)) / (config.open_parts[d][high].share * area_of_side(config, d));
+  return largest(given_flow(config, d, high)) / (config.open_parts[d][high].share * config.grid.side_area(d));
 }
 
 std::vector<std::string> side_lines(const Config &config) {
@@ -105,8 +103,7 @@ std::vector<std::string> lumen_warnings(const Config &config) {
       warnings.push_back(side + "Reynolds number " + number(reynolds, 3) +
                          " of the lumen: a flow above 1e4 is turbulent, and there is no model of turbulence");
   });
-  double box = 1;
-  for (int d = 0; d < (flat(config) ? 2 : 3); ++d) box *= config.grid.length[d];
+  const double box = config.grid.volume();
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &spec = config.species[s];
     const std::string option = "-" + spec.name;

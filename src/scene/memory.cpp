@@ -16,19 +16,12 @@
 namespace eulastic {
 namespace {
 
-int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
-int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(dimension_of(config)).size()); }
-
-/// Doubles per cell of a phase: fraction, label and deformation; with the staggered method a second copy at the time of
-/// the output.
-double phase_fields(const Config &config, bool carries_tensor) {
-  return (1 + config.body_series + carries_tensor * tensor_fields(config)) * (config.method.staggered() ? 2 : 1);
-}
+int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(config.grid.dimension()).size()); }
 
 /// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity,
 /// of bodies without a surface that exerts forces in the cells alone that FreeBodies::look() keeps.
 double boxed_values(const Config &config) {
-  const int dimension = dimension_of(config);
+  const int dimension = config.grid.dimension();
   double sum = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     if (!config.lies_in_boxes(s)) continue;
@@ -53,55 +46,63 @@ double boxed_values(const Config &config) {
   return sum;
 }
 
+/// Doubles per cell of a species: fraction, label and deformation, with the staggered method a second copy at the time
+/// of the output. Of bodies in boxes what is shown on the grid at the output, fraction, label and B, and of those with
+/// a viscosity or a force of their own the fraction of the step and at its end.
+double species_fields(const Config &config, std::size_t which) {
+  const Material material = config.species[which].material();
+  const bool felt = material.viscosity > 0 || material.body_force.acts();
+  if (config.lies_in_boxes(which)) return 2 + 2 * felt + tensor_fields(config);
+  const int fields = 1 + config.body_series + material.carries_tensor() * tensor_fields(config);
+  return fields * (config.method.staggered() ? 2 : 1);
+}
+
+/// Doubles per cell of the pressure solver, without the work space. `rigid`: bodies give increments of their own, in
+/// the place of those of the iterations, which then need scratch.
+double pressure_fields(const Method &method, int dimension, bool rigid) {
+  if (method.pressure == PressureKind::smac) return 2 + rigid * method.acm_memory;  // two copies to transform
+  // Matrices, levels and vectors, as measured with CG and PCMG.
+  if (method.pressure == PressureKind::ksp) return 55 + rigid * method.acm_memory;
+  if (method.is_single_acm_step()) return 0;
+  if (!method.acm_coarse) return method.acm_memory;
+  return method.acm_memory + (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0 || rigid);  // coarse grids, scratch
+}
+
 /// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; work space; what the parts of the method
-/// add; the phases.
+/// add; the species.
 double fields(const Config &config) {
   const Method &method = config.method;
-  const int dimension = dimension_of(config);
-  bool tension = false, membranes = false;  // on the grid
+  const int dimension = config.grid.dimension();
+  Solver::Contents scene{has_open_boundary(config.sides), !config.species.empty()};
+  bool travels = false, carries_tensor = false;
+  ViscosityContrast contrast(config.fluid);
+  double species = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
-    if (config.lies_in_boxes(s)) continue;
-    tension = tension || config.species[s].surface_tension > 0;
-    membranes = membranes || config.species[s].is_membrane();
+    const SpeciesSpec &spec = config.species[s];
+    const bool on_grid = !config.lies_in_boxes(s);
+    scene.surface_tension |= on_grid && spec.surface_tension > 0;
+    scene.membranes |= on_grid && spec.is_membrane();
+    scene.rigid |= spec.law == Law::rigid;
+    travels |= spec.travels(dimension);
+    carries_tensor |= spec.material().carries_tensor();
+    contrast.add(spec.material(), 0);
+    species += species_fields(config, s);
   }
-  const bool rigid = std::any_of(config.species.begin(), config.species.end(),
-                                 [](const SpeciesSpec &spec) { return spec.law == Law::rigid; });
-  const Solver::Contents contents{has_open_boundary(config.sides), !config.species.empty(), tension, membranes, rigid};
-  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, contents);
-  if (method.pressure == PressureKind::smac) sum += 2;  // two copies to transform
-  if (method.pressure == PressureKind::ksp) sum += 55;  // matrices, levels and vectors, as measured with CG and PCMG
-  if (method.pressure == PressureKind::acm && !method.is_single_acm_step()) {
-    sum += method.acm_memory;
-    if (method.acm_coarse) sum += (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0);  // coarse grids, scratch
-  }
-  const bool travels = std::any_of(config.species.begin(), config.species.end(),
-                                   [&](const SpeciesSpec &spec) { return spec.travels(dimension); });
-  if (travels) sum += dimension;              // which faces are inside; twice that beside bodies of a file
-  if (rigid && !method.is_single_acm_step())  // its own increments, for those of the sweeps, which then need scratch
-    sum += method.pressure == PressureKind::acm ? method.acm_coarse && method.acm_memory > 0 : method.acm_memory;
+  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, scene) + species +
+               pressure_fields(method, dimension, scene.rigid);
+  if (travels) sum += dimension;  // which faces are inside; twice that beside bodies of a file
   for (const auto &pair : config.sides)
     for (const BoundaryCondition &side : pair)
       sum += side.kind == BoundaryKind::pressure && side.load.exists();  // its response
   if (method.staggered() && config.fluid.inertia) sum += dimension;      // of the step before
   if (config.species.empty()) return sum;
-  double tensor = 0;
-  for (std::size_t s = 0; s < config.species.size(); ++s) {
-    const bool carries = config.species[s].material().carries_tensor();
-    if (carries) tensor = tensor_fields(config);
-    // Of bodies in boxes what is shown on the grid at the output, fraction, label and B, and of those with a viscosity
-    // or a force of their own the fraction of the step and at its end.
-    const SpeciesSpec &spec = config.species[s];
-    const bool felt = spec.material().viscosity > 0 || spec.material().body_force.acts();
-    sum += config.lies_in_boxes(s) ? 2 + 2 * felt + tensor_fields(config) : phase_fields(config, carries);
-  }
+  const int tensor = carries_tensor ? tensor_fields(config) : 0;
   if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
   if (!method.staggered()) sum += tensor;
-  if (membranes) sum += dimension;  // their force
+  if (scene.membranes) sum += dimension;  // their force
   if (method.interface == InterfaceScheme::weno5) sum += 1;
-  ViscosityContrast contrast(config.fluid);
-  for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
   if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
-  if (method.implicit_viscosity(contrast.exists(), rigid))  // ImplicitViscosity
+  if (method.implicit_viscosity(contrast.exists(), scene.rigid))  // ImplicitViscosity
     sum += 5 * dimension + 3 + (dimension == 2 ? 1 : 0.4);
   if (Scheme::extrapolates_pressure(method, contrast, travels)) sum += 1;  // pressure before
   return sum;
@@ -110,7 +111,7 @@ double fields(const Config &config) {
 double ghosted_cells(const Config &config, const Int3 &parts) {
   const Int3 box = Domain::largest_box(config.grid, parts);
   double cells = 1;
-  for (int d = 0; d < 3; ++d) cells *= box[d] + (d < dimension_of(config) ? 2 * config.grid.ghosts : 0);
+  for (int d = 0; d < 3; ++d) cells *= box[d] + (d < config.grid.dimension() ? 2 * config.grid.ghosts : 0);
   return cells;
 }
 

@@ -2,7 +2,6 @@
 
 #include "bodies/volume_fraction.hpp"
 #include "io/option_values.hpp"
-#include "scene/inflow_balance.hpp"
 #include "scene/voxels.hpp"
 
 #include <algorithm>
@@ -14,8 +13,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-bool flat(const Config &config) { return config.grid.cells[2] == 1; }
-
 // The largest solid fraction in every cell that one of the bodies of a species has there.
 std::string fill(const Config &config, std::size_t s, const CellWindow &cells, View fraction) {
   const SpeciesSpec &spec = config.species[s];
@@ -26,7 +23,7 @@ std::string fill(const Config &config, std::size_t s, const CellWindow &cells, V
         for (int j = 0; j < window.size[1]; ++j)
           std::copy_n(phi.row(j, k), window.size[0], fraction.row(j, window.begin[2] - first[2] + k));
     });
-  const Surface surface(spec, flat(config) ? 2 : 3);
+  const Surface surface(spec, config.grid.dimension());
   for (const NumberedPlace &place : config.places[s].known) {
     const PlacedBody body(surface, config.grid, place);
     body.for_cells(first, cells.size, [&](const Int3 &cell, const Int3 &unwrapped) {
@@ -41,10 +38,10 @@ std::string fill(const Config &config, std::size_t s, const CellWindow &cells, V
 // there.
 class SideCells {
 public:
-  SideCells(const Config &config, int d, bool high) : config_(config), d_(d) {
+  SideCells(const Config &config, int d, bool high)
+      : config_(config), d_(d), window_(config.grid, {}, config.grid.cells) {
     for (int e = 0; e < 3; ++e)
       if (e != d) along_[e - (e > d)] = e;
-    window_.size = config.grid.cells;
     window_.begin[d] = high ? config.grid.cells[d] - 1 : 0;
     window_.size[d] = 1;
     open_.assign(std::size_t(count(0)) * count(1), 1);
@@ -52,7 +49,6 @@ public:
 
   // Error of a file. `known`: false if bodies come from -initial_state.
   std::string subtract_rigid(bool *known) {
-    const CellWindow cells(config_.grid, window_.begin, window_.size);
     const Int3 &n = window_.size;
     for (std::size_t s = 0; s < config_.species.size(); ++s) {
       const SpeciesSpec &spec = config_.species[s];
@@ -61,7 +57,7 @@ public:
       if (spec.shape == Shape::state) continue;
       std::vector<double> solid(open_.size());
       const View fraction{solid.data(), n[0], std::ptrdiff_t(n[0]) * n[1]};
-      if (std::string wrong = fill(config_, s, cells, fraction); !wrong.empty()) return wrong;
+      if (std::string wrong = fill(config_, s, window_, fraction); !wrong.empty()) return wrong;
       for (std::size_t c = 0; c < open_.size(); ++c) open_[c] = std::max(0.0, open_[c] - solid[c]);
     }
     return {};
@@ -72,7 +68,7 @@ public:
     double sum = 0;
     for (const double open : open_) sum += open;
     part.share = sum / double(open_.size());
-    part.area = part.share * area_of_side(config_, d_);
+    part.area = part.share * config_.grid.side_area(d_);
     chords_.assign(open_.size(), infinity);
     widths_ = chords_;
     for (const int which : {0, 1})
@@ -154,12 +150,9 @@ private:
     }
   }
 
-  struct Window {
-    Int3 begin{}, size{};
-  };
   const Config &config_;
   int d_, along_[2];
-  Window window_;
+  CellWindow window_;
   std::vector<double> open_, chords_, widths_;
 };
 
@@ -187,7 +180,7 @@ std::string check_slabs(const Config &config) {
 // Inflow must be able to leave.
 std::string check_way(const Config &config, const std::array<std::array<bool, 2>, 3> &closed) {
   std::string inlet, outlet, covered;
-  bool way_out = false;
+  bool comes_in = false, way_out = false;
   for_crossed_sides(config, [&](int d, int high) {
     const std::string side = side_name(d, high);
     if (config.sides[d][high].kind != BoundaryKind::inflow) {
@@ -195,6 +188,7 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
       outlet = side;
       return;
     }
+    comes_in = true;
     if (closed[d][high] && inlet.empty()) inlet = side;
     if (config.open_parts[d][high].share != 1 && !config.openings[d][high].velocity.empty() && covered.empty())
       covered = side;
@@ -207,8 +201,6 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
            "_velocity: rigid bodies cover a part of this boundary, and no boundary is open, so that the inflow rates "
            "must balance; accepted: -boundary_" +
            covered + "_flow_rate";
-  bool comes_in = false;
-  for_crossed_sides(config, [&](int d, int high) { comes_in |= config.sides[d][high].kind == BoundaryKind::inflow; });
   if (comes_in && !outlet.empty() && !way_out)
     return "-boundary_" + outlet +
            ": rigid bodies cover all boundaries through which the inflow could leave; accepted: an open boundary";

@@ -11,6 +11,7 @@
 #include <petscksp.h>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace eulastic {
 namespace {
@@ -87,24 +88,10 @@ std::string extend_table(const OpeningSpec &spec, const std::string &side, const
          "_table_hold true to hold its first and its last value";
 }
 
-std::size_t cells_of_side(const Config &config, int d) {
-  std::size_t cells = 1;
-  for (int e = 0; e < 3; ++e)
-    if (e != d) cells *= std::size_t(config.grid.cells[e]);
-  return cells;
-}
-
-// Scales a profile to the mean 1; returns its former mean.
-double make_mean_one(InflowProfile *profile) {
-  double sum = 0;
-  for (const double value : *profile) sum += value;
-  const double mean = sum / double(profile->size());
-  for (double &value : *profile) value /= mean;
-  return mean;
-}
-
+// Reads a profile, scaled to the mean 1, and its mean in the file.
 std::string read_profile(const Config &config, int d, int high, InflowProfile *profile, double *mean) {
   const OpeningSpec &spec = config.openings[d][high];
+  const Int3 &n = config.grid.cells;
   static const RowFormat format{"uniform, developed, or a file of numbers", {}, {}};
   std::string text, wrong, file, dataset;
   const bool hdf5 = on_rank_0([&] {
@@ -112,7 +99,6 @@ std::string read_profile(const Config &config, int d, int high, InflowProfile *p
     return is_hdf5(file);
   });
   if (hdf5) {
-    const Int3 &n = config.grid.cells;
     wrong = on_rank_0([&] {
       return read_profile_file(file, dataset, d == 2 ? n[1] : n[2], d == 0 ? n[1] : n[0], d, high ? -1 : 1, profile);
     });
@@ -126,11 +112,12 @@ std::string read_profile(const Config &config, int d, int high, InflowProfile *p
     wrong = "cannot read " + spec.profile + "; accepted: " + format.expected;
   }
   if (!wrong.empty()) return wrong;
-  const std::size_t cells = cells_of_side(config, d);
+  const std::size_t cells = std::size_t(n[0]) * n[1] * n[2] / n[d];
   if (profile->size() != cells)
     return spec.profile + " has " + std::to_string(profile->size()) +
            " numbers; accepted: one per cell of the boundary, " + std::to_string(cells);
-  *mean = make_mean_one(profile);
+  *mean = std::accumulate(profile->begin(), profile->end(), 0.0) / double(cells);
+  for (double &value : *profile) value /= *mean;
   if (!std::isfinite(1 / *mean)) return spec.profile + ": its mean is 0; accepted: a flow into the box";
   return {};
 }
@@ -170,7 +157,7 @@ std::string resolve_inflow(const Config &config, int d, int high, BoundaryCondit
   if (std::string wrong = extend_table(spec, name, option, text, config.time.end, &course); !wrong.empty())
     return wrong;
   if (flow) {
-    const double area = area_of_side(config, d);
+    const double area = config.grid.side_area(d);
     course.value /= area;
     for (auto &row : course.table) row[1] /= area;
   }
@@ -284,7 +271,7 @@ PetscErrorCode find_open_cells(const Config &config, const Domain &domain, const
                                OpenCells *cells) {
   const SidePlane plane(d);
   const int na = config.grid.cells[plane.a], nb = config.grid.cells[plane.b];
-  const Int3 &n = domain.cells(), &begin = domain.layout().begin;
+  const Int3 &begin = domain.layout().begin;
   PetscFunctionBeginUser;
   cells->all.assign(std::size_t(OpenCells::values) * na * nb, 0);
   if (!rigid) {
@@ -295,25 +282,20 @@ PetscErrorCode find_open_cells(const Config &config, const Domain &domain, const
     const std::size_t cell = (begin[plane.a] + local[plane.a]) + std::size_t(na) * (begin[plane.b] + local[plane.b]);
     return cells->all.data() + OpenCells::values * cell;
   };
-  Int3 first{}, last = n;
-  if (!domain.touches(d, high)) last = {};
-  first[d] = high ? n[d] : 0;
-  last[d] = last[d] > 0 ? first[d] + 1 : 0;
-  for (int k = first[2]; k < last[2]; ++k)
-    for (int j = first[1]; j < last[1]; ++j) {
-      const RigidFaces::Row row = rigid->row(d, j, k);
-      for (int i = first[0]; i < last[0]; ++i) {
-        double *cell = values({i, j, k});
-        cell[0] = 1;
-        for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-          if (i >= run->begin && i < run->end) cell[0] = 0;
-        for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-          for (const int which : {0, 1})
-            for (const bool up : {false, true})
-              if (const int link = 2 * (which == 0 ? plane.a : plane.b) + up; cut->i == i && (cut->walls >> link & 1U))
-                cell[1 + 2 * which + up] = cut->link[link];
-      }
+  for (const Segment &faces : domain.boundary_faces(d, high)) {
+    const RigidFaces::Row row = rigid->row(d, faces.j, faces.k);
+    for (int i = faces.i_begin; i < faces.i_end; ++i) {
+      double *cell = values({i, faces.j, faces.k});
+      cell[0] = 1;
+      for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
+        if (i >= run->begin && i < run->end) cell[0] = 0;
+      for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+        for (const int which : {0, 1})
+          for (const bool up : {false, true})
+            if (const int link = 2 * (which == 0 ? plane.a : plane.b) + up; cut->i == i && (cut->walls >> link & 1U))
+              cell[1 + 2 * which + up] = cut->link[link];
     }
+  }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cells->all.data(), static_cast<int>(cells->all.size()), MPI_DOUBLE, MPI_SUM,
                              domain.comm()));
   PetscFunctionReturn(0);
@@ -330,11 +312,9 @@ PetscErrorCode measure_open_part(const Domain &domain, const std::vector<Phase> 
       if (phase.material.is_rigid()) solid += phase.fraction[0](i, j, k);
     covered.add(0, std::min(1.0, solid));
   });
-  double sum, faces = 1;
+  double sum;
   PetscCall(covered.reduce(domain.comm(), &sum));
-  for (int e = 0; e < 3; ++e)
-    if (e != d) faces *= domain.domain_cells()[e];
-  *part = 1 - sum / faces;
+  *part = 1 - sum / (domain.domain_cell_count() / domain.domain_cells()[d]);
   PetscFunctionReturn(0);
 }
 
@@ -350,26 +330,20 @@ PetscErrorCode assemble(const Config &config, int d, const OpenCells &cells, Mat
         PetscCall(MatSetValue(matrix, row, row, 1, ADD_VALUES));
         continue;
       }
+      double diagonal = 0;
       for (const int which : {0, 1}) {
         const int e = which == 0 ? plane.a : plane.b;
-        const double h = config.grid.length[e] / config.grid.cells[e], coupling = 1 / (h * h);
+        const double h = config.grid.spacing(e), coupling = 1 / (h * h);
         for (const bool high : {false, true}) {
           const Beyond other = beyond(config, e, which == 0 ? i : j, high);
           const PetscInt column = which == 0 ? other.index + PetscInt(n[0]) * j : i + PetscInt(n[0]) * other.index;
-          if (const double link = cells.link(row, which, high); link > 0) {
-            PetscCall(MatSetValue(matrix, row, row, link, ADD_VALUES));
-            *held = true;
-          } else if (other.cell) {
-            PetscCall(MatSetValue(matrix, row, column, -coupling, ADD_VALUES));
-            PetscCall(MatSetValue(matrix, row, row, coupling, ADD_VALUES));
-          } else if (other.wall) {
-            PetscCall(MatSetValue(matrix, row, row, 2 * coupling, ADD_VALUES));
-            *held = true;
-          } else {
-            PetscCall(MatSetValue(matrix, row, row, 0, ADD_VALUES));
-          }
+          const double link = cells.link(row, which, high);
+          *held = *held || link > 0 || other.wall;
+          diagonal += link > 0 ? link : other.wall ? 2 * coupling : other.cell ? coupling : 0;
+          if (other.cell && !(link > 0)) PetscCall(MatSetValue(matrix, row, column, -coupling, ADD_VALUES));
         }
       }
+      PetscCall(MatSetValue(matrix, row, row, diagonal, ADD_VALUES));
     }
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
@@ -381,28 +355,25 @@ PetscErrorCode develop(const Config &config, int d, const OpenCells &open, Inflo
   const PetscInt cells = PetscInt(config.grid.cells[plane.a]) * config.grid.cells[plane.b];
   MatHandle matrix;
   KspHandle solver;
-  VecHandle one, flow;
+  VecHandle force, flow;
   PC pc;
   bool held;
-  const double *values;
   PetscFunctionBeginUser;
   PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, cells, cells, 5, nullptr, matrix.put()));
   PetscCall(MatSetOption(matrix.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   PetscCall(assemble(config, d, open, matrix.get(), &held));
   if (!held) PetscFunctionReturn(0);
-  PetscCall(MatCreateVecs(matrix.get(), flow.put(), one.put()));
-  for (PetscInt cell = 0; cell < cells; ++cell) PetscCall(VecSetValue(one.get(), cell, open.open(cell), INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(one.get()));
-  PetscCall(VecAssemblyEnd(one.get()));
+  std::vector<double> one(cells);
+  for (PetscInt cell = 0; cell < cells; ++cell) one[cell] = open.open(cell);
+  profile->assign(cells, 0);
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, cells, one.data(), force.put()));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, cells, profile->data(), flow.put()));
   PetscCall(KSPCreate(PETSC_COMM_SELF, solver.put()));
   PetscCall(KSPSetOperators(solver.get(), matrix.get(), matrix.get()));
   PetscCall(KSPSetType(solver.get(), KSPPREONLY));
   PetscCall(KSPGetPC(solver.get(), &pc));
   PetscCall(PCSetType(pc, PCLU));
-  PetscCall(KSPSolve(solver.get(), one.get(), flow.get()));
-  PetscCall(VecGetArrayRead(flow.get(), &values));
-  profile->assign(values, values + cells);
-  PetscCall(VecRestoreArrayRead(flow.get(), &values));
+  PetscCall(KSPSolve(solver.get(), force.get(), flow.get()));
   PetscFunctionReturn(0);
 }
 

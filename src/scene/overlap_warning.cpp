@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <utility>
+#include <tuple>
 
 namespace eulastic {
 namespace {
@@ -25,8 +25,12 @@ const SpeciesSpec &species_of(const Config &config, int label) {
   return config.species[s];
 }
 
+// Pairs at the same place come before all others, and none at all comes last.
 bool is_before(const Overlap &one, const Overlap &two) {
-  return two.body == 0 || std::make_pair(one.body, one.other) < std::make_pair(two.body, two.other);
+  const auto order = [](const Overlap &pair) {
+    return std::make_tuple(pair.body == 0, !pair.same_place, pair.body, pair.other);
+  };
+  return order(one) < order(two);
 }
 
 // The option that says where the bodies of a species are.
@@ -49,7 +53,7 @@ std::string describe(const Config &config, const Overlap &first, long count) {
              "%ld bodies overlap as placed; first body %d (%s) and body %d (%s), which share %s of at least %.3g, "
              "%.3g %% of body %d; ",
              count, first.body, one.name.c_str(), first.other, two.name.c_str(),
-             config.grid.cells[2] == 1 ? "an area" : "a volume", first.volume,
+             config.grid.dimension() == 2 ? "an area" : "a volume", first.volume,
              100 * first.volume / std::min(volume(one), volume(two)), of_one ? first.body : first.other) +
          remedy(moves_two ? two : one);
 }
@@ -86,7 +90,7 @@ PetscErrorCode compare_with_file(MPI_Comm comm, const Config &config, const Cell
     }
   PetscCall(send_to_ranks(comm, owners, &records));
   double cell = std::ldexp(1.0, -30);
-  for (int d = 0; d < (config.grid.cells[2] == 1 ? 2 : 3); ++d) cell *= config.grid.length[d] / config.grid.cells[d];
+  for (int d = 0; d < config.grid.dimension(); ++d) cell *= config.grid.spacing(d);
   std::map<int, SharedVolume> sums;
   for (const Record &record : records) {
     SharedVolume &sum = sums[record.label];
@@ -123,22 +127,6 @@ PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels,
   PetscFunctionReturn(0);
 }
 
-// The first of the pairs that ranks have found, those at the same place before all others.
-PetscErrorCode agree(MPI_Comm comm, Overlap *first) {
-  PetscFunctionBeginUser;
-  const std::array<int, 4> mine{first->body == 0, !first->same_place, first->body, first->other};
-  std::array<int, 4> least{};
-  for (std::size_t n = 0; n < mine.size(); ++n) {  // of the ranks that have the least of all before it
-    const bool last = !std::equal(mine.begin(), mine.begin() + n, least.begin());
-    const int value = last ? std::numeric_limits<int>::max() : mine[n];
-    PetscCallMPI(MPI_Allreduce(&value, &least[n], 1, MPI_INT, MPI_MIN, comm));
-  }
-  double volume = mine == least ? first->volume : 0;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPI_DOUBLE, MPI_MAX, comm));
-  *first = {least[2], least[3], volume, least[1] == 0};
-  PetscFunctionReturn(0);
-}
-
 }  // namespace
 
 PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *warning, std::string *refusal) {
@@ -168,7 +156,9 @@ PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *wa
   for (std::size_t s = 0; s < near.size(); ++s)
     if (is_file(config.species[s]))
       PetscCall(compare_with_file(comm, config, {config.grid, box.begin, box.cells}, near, s, &overlaps, &first));
-  PetscCall(agree(comm, &first));
+  std::vector<Overlap> of_ranks{first};
+  PetscCall(gather_all(comm, &of_ranks));
+  first = *std::min_element(of_ranks.begin(), of_ranks.end(), is_before);
   long count;
   PetscCall(count_bodies(comm, first_labels(config.species, config.places).back() - 1, &overlaps, &count));
   if (first.same_place)

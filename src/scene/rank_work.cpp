@@ -159,7 +159,7 @@ private:
 bool comes_from_files(const Config &config) {
   return !config.initial_state.empty() ||
          std::any_of(config.species.begin(), config.species.end(), [](const SpeciesSpec &spec) {
-           return phase_work(spec.material(), false) > 0 && (spec.shape == Shape::voxels || spec.shape == Shape::state);
+           return phase_work(spec.material(), false) > 0 && is_from_file(spec.shape);
          });
 }
 

@@ -33,7 +33,7 @@ namespace {
 std::vector<std::string> coarse_surfaces(const Config &config, bool of_membranes) {
   constexpr double apart = 3, radius_of_drop = 6, round_off = 1 - 1e-9;  // in cells
   std::vector<std::string> warnings;
-  const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
+  const int dimension = config.grid.dimension();
   const double spacing = config.grid.longest_spacing();
   for (const SpeciesSpec &spec : config.species) {
     if (spec.is_membrane() ? !of_membranes : !(spec.surface_tension > 0)) continue;

@@ -15,10 +15,9 @@ const std::vector<std::pair<std::string, std::string>> &red_cell_preset();
 std::vector<std::string> red_cell_lines(const Config &config);
 /// Growth of the area at which the membrane of a red cell bursts (Evans, Waugh and Melnik 1976).
 constexpr double red_cell_bursts = 0.04;
-/// One line on every species whose surface the grid does not resolve: membranes somewhere less than three cells apart,
-/// drops of less than six cells in radius, which the flow stretches.
+/// One line on every species of membranes that are somewhere less than three cells apart.
 std::vector<std::string> coarse_surface_warnings(const Config &config);
-/// Those of drops.
+/// One line on every species of drops of less than six cells in radius, which the flow stretches.
 std::vector<std::string> coarse_drop_warnings(const Config &config);
 
 }  // namespace eulastic

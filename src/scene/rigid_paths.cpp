@@ -12,8 +12,6 @@ namespace {
 constexpr int free_cells = 2;         // between a body and a side
 constexpr double most_samples = 1e7;  // at pairs of bodies
 
-int dimension_of(const Config &config) { return config.grid.cells[2] == 1 ? 2 : 3; }
-
 // Displacement of a body along d.
 double shift(const SpeciesSpec &spec, int d, double time) {
   return spec.slides(d) ? 0 : spec.motion.velocity[d] * spec.motion.of_velocity.integral(time);
@@ -36,7 +34,7 @@ Interval reach(const Oscillation &factor, double end) {
 // Its largest extent from its centre along d at any angle that it reaches.
 double largest_extent(const Config &config, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place,
                       int d) {
-  const int samples = spec.turns(dimension_of(config)) ? 360 : 0;  // over a turn at most: within 4e-5 of it
+  const int samples = spec.turns(config.grid.dimension()) ? 360 : 0;  // over a turn at most: within 4e-5 of it
   const Interval way = reach(spec.motion.of_rotation, config.time.end);
   const Real3 &w = spec.motion.angular_velocity;
   const double once = 2 * M_PI / std::hypot(w[0], w[1], w[2]), high = std::min(way.high, way.low + once);
@@ -51,7 +49,7 @@ double largest_extent(const Config &config, const SpeciesSpec &spec, const Surfa
 
 std::string check_path(const Config &config, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place,
                        int d) {
-  const bool turns = spec.turns(dimension_of(config));
+  const bool turns = spec.turns(config.grid.dimension());
   const double V = spec.motion.velocity[d], length = config.grid.length[d];
   if (V == 0 && !turns) return {};
   const double extent = largest_extent(config, spec, surface, place, d);
@@ -76,7 +74,7 @@ std::string check_path(const Config &config, const SpeciesSpec &spec, const Surf
 // Distance of two bodies at a time; infinite for shapes without a formula here.
 double gap_between(const Config &config, const SpeciesSpec &one, const BodyPlace &at, const SpeciesSpec &two,
                    const BodyPlace &place, double time) {
-  const int dimension = dimension_of(config);
+  const int dimension = config.grid.dimension();
   const auto round = [](Shape shape) { return shape == Shape::sphere || shape == Shape::cylinder; };
   if (!round(one.shape) || !(round(two.shape) || two.shape == Shape::tube)) return HUGE_VAL;
   double square = 0;
@@ -94,9 +92,7 @@ double gap_between(const Config &config, const SpeciesSpec &one, const BodyPlace
 // (rigid/rigid_bodies.hpp).
 std::string check_meetings(const Config &config, std::size_t which) {
   const SpeciesSpec &one = config.species[which];
-  double spacing = HUGE_VAL;
-  for (int d = 0; d < dimension_of(config); ++d)
-    spacing = std::min(spacing, config.grid.length[d] / config.grid.cells[d]);
+  const double spacing = config.grid.shortest_spacing();
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &two = config.species[s];
     if (s == which || two.law != Law::rigid) continue;
@@ -120,13 +116,13 @@ std::string check_meetings(const Config &config, std::size_t which) {
 }  // namespace
 
 std::string check_path(const Config &config, const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place) {
-  for (int d = 0; d < dimension_of(config); ++d)
+  for (int d = 0; d < config.grid.dimension(); ++d)
     if (std::string wrong = check_path(config, spec, surface, place, d); !wrong.empty()) return wrong;
   return {};
 }
 
 std::string check_paths(const Config &config) {
-  const int dimension = dimension_of(config);
+  const int dimension = config.grid.dimension();
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &spec = config.species[s];
     if (!spec.travels(dimension)) continue;

@@ -3,6 +3,7 @@
 #include "base/events.hpp"
 #include "bodies/fill_phase.hpp"
 #include "bodies/near_places.hpp"
+#include "bodies/unwrap.hpp"
 #include "boxes/boxed_bodies.hpp"
 #include "io/fail_together.hpp"
 #include "rigid/rigid_bodies.hpp"
@@ -39,11 +40,7 @@ PetscErrorCode box_places(const Domain &domain, const SpeciesSpec &species, cons
   phase->empty(domain, false);
   const Surface surface(species, domain.dimension());
   for (const NumberedPlace &place : near.known) {
-    Int3 cell{};
-    for (int d = 0; d < domain.dimension(); ++d) {
-      const int at = static_cast<int>(std::floor(place.centre[d] / domain.spacing()[d]));
-      cell[d] = std::clamp(at, 0, domain.domain_cells()[d] - 1);
-    }
+    const Int3 cell = cell_of(domain, place.centre);
     if (domain.owner(cell[0], cell[1], cell[2]) != domain.rank()) continue;
     const Box box = box_of_body(domain.domain_shape(), surface, place, 0, domain.spec().ghosts);
     PetscCall(solver->boxed().add(numbering.first_label + place.index, numbering.species, box,

@@ -12,12 +12,11 @@ namespace {
 
 void add_attachment_warnings(const Config &config, std::vector<std::string> *warnings) {
   if (config.method.exterior != SolidExterior::extrapolate) return;
-  const int dimension = config.grid.cells[2] == 1 ? 2 : 3;
   Real3 spacing;
-  for (int d = 0; d < 3; ++d) spacing[d] = config.grid.length[d] / config.grid.cells[d];
+  for (int d = 0; d < 3; ++d) spacing[d] = config.grid.spacing(d);
   for (const SpeciesSpec &spec : config.species) {
     const Material material = spec.material();
-    if (!material.anchored || damps_short_waves(spacing, dimension, config.fluid, material)) continue;
+    if (!material.anchored || damps_short_waves(spacing, config.grid.dimension(), config.fluid, material)) continue;
     warnings->push_back(
         print("%s is anchored and too stiff for the grid: sqrt(shear modulus/density) h exceeds the kinematic "
               "viscosity %g, so that its strain at the surface is of first order only, as for a free body; use a "

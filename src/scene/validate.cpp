@@ -21,7 +21,7 @@ namespace {
 
 constexpr double most_unequal = 1000;  // spacings
 
-bool flat(const Config &config) { return config.grid.cells[2] == 1; }
+bool flat(const Config &config) { return config.grid.dimension() == 2; }
 
 std::string check_grid(const Config &config) {
   if (config.ranks > 0 && !config.check_only)
@@ -49,18 +49,15 @@ std::string check_grid(const Config &config) {
 }
 
 std::string check_spacings(const Config &config) {
-  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-  for (int d = 0; d < (flat(config) ? 2 : 3); ++d) {
-    shortest = std::min(shortest, config.grid.length[d] / config.grid.cells[d]);
-    longest = std::max(longest, config.grid.length[d] / config.grid.cells[d]);
-  }
+  const double shortest = config.grid.shortest_spacing(), longest = config.grid.longest_spacing();
   if (longest <= most_unequal * shortest) return {};
   return "-grid_length: one spacing is " + to_text(longest / shortest) + " times another; accepted: at most " +
          to_text(most_unequal) + " times";
 }
 
 std::string check_vector(const Config &config, const std::string &name, const Real3 &value) {
-  if (flat(config) && value[2] != 0) return "-" + name + ": the z component must be 0 in 2-D (one cell in z)";
+  if (flat(config) && value[2] != 0)
+    return "-" + name + ": " + to_text(value[2]) + " along z in 2-D (one cell in z); accepted: 0 along z";
   return {};
 }
 
@@ -69,37 +66,33 @@ std::string check_walls(const Config &config) {
     for (int side = 0; side < 2; ++side) {
       const Real3 &velocity = config.sides[d][side].motion.velocity;
       const std::string name = "boundary_" + side_name(d, side) + "_velocity";
-      if (velocity[d] != 0) return "-" + name + ": the " + "xyz"[d] + " component is normal to the wall and must be 0";
+      if (velocity[d] != 0)
+        return "-" + name + ": the " + "xyz"[d] + " component is normal to the wall; accepted: 0 along " + "xyz"[d];
       if (const std::string wrong = check_vector(config, name, velocity); !wrong.empty()) return wrong;
     }
   return {};
-}
-
-// Whether a boundary is inflow, pressure or outflow.
-bool crossed(const Config &config, int d, int high) {
-  return config.grid.open[d][high] || config.boundary.is(BoundaryKind::inflow, d, high);
 }
 
 std::string check_flow(const Config &config) {
   if (const std::string wrong = check_vector(config, "body_force", config.fluid.body_force.force); !wrong.empty())
     return wrong;
   if (!config.initial_state.empty() && !is_file(config.initial_state))
-    return "-initial_state: " + config.initial_state + " is not a file";
+    return "-initial_state: " + config.initial_state + " is not a file; accepted: an HDF5 file";
   const InitialFlow &initial = config.initial;
   if (const std::string wrong = check_vector(config, "initial_velocity_mean", initial.mean); !wrong.empty())
     return wrong;
   for (int d = 0; d < 3; ++d)
     if (config.grid.boundary[d] == Boundary::wall && initial.mean[d] != 0 &&
-        !(crossed(config, d, 0) && crossed(config, d, 1)))
-      return std::string("-initial_velocity_mean: the ") + "xyz"[d] +
-             " component must be 0 where a boundary of this direction is closed";
+        !(fluid_crosses(config.sides[d][0].kind) && fluid_crosses(config.sides[d][1].kind)))
+      return std::string("-initial_velocity_mean: a boundary in ") + "xyz"[d] + " is closed; accepted: 0 along " +
+             "xyz"[d];
   const std::string &name = initial_velocity_names()[static_cast<int>(initial.kind)];
   const bool between_walls = initial.kind == InitialVelocity::couette || initial.kind == InitialVelocity::poiseuille;
   if (between_walls && !(config.boundary.is_wall(1, 0) && config.boundary.is_wall(1, 1)))
-    return "-initial_velocity: " + name + " needs -boundary_y wall";
+    return "-initial_velocity: " + name + " is a flow between walls; accepted: with -boundary_y wall";
   const auto [component, along] = shear_wave_directions(initial.kind);
   if (flat(config) && (component == 2 || along == 2 || initial.kind == InitialVelocity::taylor_green_3d))
-    return "-initial_velocity: " + name + " needs more than one cell in z";
+    return "-initial_velocity: " + name + " is three-dimensional; accepted: with more than one cell in z";
   return {};
 }
 
@@ -137,8 +130,7 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   const std::string name = "-" + spec.name + "_";
   const auto no = [&](const char *option, const char *why) { return name + option + ": " + why; };
   const RigidMotion &motion = spec.motion;
-  const bool closed = spec.shape == Shape::sphere || spec.shape == Shape::ellipsoid || spec.shape == Shape::biconcave ||
-                      spec.shape == Shape::voxels;
+  const bool closed = is_closed(spec.shape) || spec.shape == Shape::voxels;
   for (int d = 0; d < 3; ++d) {
     const bool about_axis = spec.shape == Shape::cylinder && d == spec.axis;
     if (motion.angular_velocity[d] != 0 && ((flat(config) && d != 2) || !(closed || about_axis)))
@@ -148,7 +140,7 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
           "that of a cylinder, z alone in 2-D, else 0,0,0");
     if (motion.velocity[d] == 0) continue;
     if (flat(config) && d == 2 && spec.shape != Shape::slab)
-      return no("velocity", "the z component must be 0 in 2-D (one cell in z)");
+      return no("velocity", "the body moves along z in 2-D (one cell in z); accepted: 0 along z");
     const bool fluid_around = closed || (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
     if (spec.shape == Shape::slab && d == spec.axis) {
       if (!piston_has_way_out(config, spec))
@@ -168,52 +160,67 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
-std::string check_species(const Config &config, const SpeciesSpec &spec) {
+// Sizes that the rows of the options do not relate to each other.
+std::string check_shape(const Config &config, const SpeciesSpec &spec) {
+  const std::string own = "-" + spec.name + "_";
   if (spec.shape == Shape::state && config.initial_state.empty())
-    return "-" + spec.name + "_shape: state needs -initial_state";
-  if ((spec.shape == Shape::voxels || spec.shape == Shape::state) && spec.placement != Placement::one)
-    return "-" + spec.name + "_placement: does not apply with -" + spec.name + "_shape " +
-           (spec.shape == Shape::state ? "state" : "voxels") + "; accepted: one";
-  if (spec.shape == Shape::slab) {
-    const auto [low, high] = spec.interval;
-    if (!(low < high)) return "-" + spec.name + "_interval: the low side must be below the high side";
-    if (high <= 0 || low >= config.grid.length[spec.axis])
-      return "-" + spec.name + "_interval: the slab is outside the box; accepted: a part of 0," +
-             to_text(config.grid.length[spec.axis]);
-  }
-  if (spec.viscosity && config.fluid.viscosity == 0)
-    return "-" + spec.name + "_viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
-  if (const std::string wrong = check_vector(config, spec.name + "_body_force", spec.body_force.force); !wrong.empty())
-    return wrong;
-  for (const auto check : {check_membrane, check_rigid})
-    if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
-  if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().carries_tensor())
-    return "-" + spec.name + "_initial_stretch: a body without a modulus has no stretch; accepted: 1,1,1, or -" +
-           spec.name + "_shear_modulus > 0";
-  if (spec.surface_tension > 0 && config.method.interface != InterfaceScheme::plic)
-    return "-" + spec.name +
-           "_surface_tension: needs a sharp interface; accepted: -method fast and -interface_scheme plic, or 0";
-  if (flat(config) && spec.initial_stretch[2] != 1)
-    return "-" + spec.name + "_initial_stretch: the z stretch must be 1 in 2-D (one cell in z)";
+    return own + "shape: state is that of -initial_state, which is not given; accepted: another shape";
+  const bool varies_along_axis =
+      spec.shape == Shape::biconcave || spec.shape == Shape::slab || spec.shape == Shape::constricted_tube;
+  if (flat(config) && varies_along_axis && spec.axis == 2)
+    return own + "axis: z in 2-D (one cell in z); accepted: x, y";
+  if (spec.shape == Shape::constricted_tube && !(spec.throat_radius < spec.radius))
+    return own + "throat_radius: " + to_text(spec.throat_radius) +
+           " is no narrower than the tube; accepted: less than " + to_text(spec.radius) + ", -" + spec.name + "_radius";
+  if (spec.shape != Shape::slab) return {};
+  const auto [low, high] = spec.interval;
+  if (!(low < high))
+    return own + "interval: the low side is not below the high side; accepted: low,high with low < high";
+  if (high <= 0 || low >= config.grid.length[spec.axis])
+    return own + "interval: the slab is outside the box; accepted: a part of 0," +
+           to_text(config.grid.length[spec.axis]);
+  return {};
+}
+
+std::string check_placement(const Config &config, const SpeciesSpec &spec) {
+  const std::string own = "-" + spec.name + "_";
   const bool random = spec.placement == Placement::random;
+  if ((is_from_file(spec.shape) || is_anchored(spec.shape)) && spec.placement != Placement::one)
+    return own + "placement: a slab, a tube, voxels and state are one body; accepted: one";
   if (spec.placement == Placement::lattice && spec.number >= 0)
-    return "-" + spec.name + "_count: with a lattice accepted: 3 integers >= 1, separated by commas";
-  if (random && spec.count != Int3{1, 1, 1})
-    return "-" + spec.name + "_count: with random placement accepted: an integer >= 0";
-  if (flat(config) && spec.count[2] != 1) return "-" + spec.name + "_count: must be 1 along z in 2-D";
-  const Int3 &n = config.grid.cells;
+    return own + "count: with a lattice accepted: 3 integers >= 1, separated by commas";
+  if (random && spec.count != Int3{1, 1, 1}) return own + "count: with random placement accepted: an integer >= 0";
+  if (flat(config) && spec.count[2] != 1)
+    return own + "count: " + std::to_string(spec.count[2]) + " along z in 2-D (one cell in z); accepted: 1 along z";
   const double bodies = double(spec.count[0]) * spec.count[1] * spec.count[2];
+  const Int3 &n = config.grid.cells;
   const double most = std::min(double(most_bodies), double(n[0]) * n[1] * n[2]);
   if (bodies > most)
-    return "-" + spec.name + "_count: " + to_text(bodies) + " bodies; accepted: at most " + to_text(most) +
+    return own + "count: " + to_text(bodies) + " bodies; accepted: at most " + to_text(most) +
            (most < most_bodies ? ", one per cell" : "");
   if (random && (spec.number >= 0) == (spec.hematocrit >= 0))
-    return "-" + spec.name + "_placement: random needs either -" + spec.name + "_count or -" + spec.name +
-           "_hematocrit";
-  if (random && (spec.shape == Shape::cylinder || is_anchored(spec.shape)))
-    return "-" + spec.name + "_placement: random needs finite bodies; accepted: sphere, biconcave, ellipsoid";
+    return own + "placement: random needs either " + own + "count or " + own + "hematocrit; accepted: one of them";
+  if (random && spec.shape == Shape::cylinder)
+    return own + "placement: random needs finite bodies; accepted: " + own + "shape sphere, biconcave, ellipsoid";
   if (spec.placement == Placement::list && !is_file(spec.positions_file))
-    return "-" + spec.name + "_positions: " + spec.positions_file + " is not a file";
+    return own + "positions: " + spec.positions_file + " is not a file; accepted: a file with rows of x,y,z";
+  return {};
+}
+
+std::string check_material(const Config &config, const SpeciesSpec &spec) {
+  const std::string own = "-" + spec.name + "_";
+  if (spec.viscosity && config.fluid.viscosity == 0)
+    return own + "viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
+  if (const std::string wrong = check_vector(config, spec.name + "_body_force", spec.body_force.force); !wrong.empty())
+    return wrong;
+  if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().carries_tensor())
+    return own + "initial_stretch: a body without a modulus has no stretch; accepted: 1,1,1, or " + own +
+           "shear_modulus > 0";
+  if (spec.surface_tension > 0 && config.method.interface != InterfaceScheme::plic)
+    return own + "surface_tension: needs a sharp interface; accepted: -method fast and -interface_scheme plic, or 0";
+  if (flat(config) && spec.initial_stretch[2] != 1)
+    return own + "initial_stretch: " + to_text(spec.initial_stretch[2]) +
+           " along z in 2-D (one cell in z); accepted: 1 along z";
   return {};
 }
 
@@ -230,23 +237,6 @@ bool is_known_everywhere(const SpeciesSpec &spec) {
   return spec.bears_load() || spec.material().anchored || spec.shape == Shape::cylinder;
 }
 
-std::string place_species(std::size_t which, const SolidBodies &solids, const KeptBodies &kept, Config *config) {
-  const SpeciesSpec &spec = config->species[which];
-  Places places;
-  if (is_random(spec)) {
-    std::vector<BodyPlace> all;
-    if (std::string wrong = seed_bodies(config->species, which, config->grid, solids, config->places, &all);
-        !wrong.empty())
-      return wrong;
-    places = Places(all);
-  } else if (const std::string wrong = place_bodies(spec, config->grid, &places, kept); !wrong.empty()) {
-    return (spec.placement == Placement::list ? "-" + spec.name + "_positions: " : "-species " + spec.name + ": ") +
-           wrong;
-  }
-  config->places.push_back(std::move(places));
-  return {};
-}
-
 // Bodies at random keep clear of all that come before them, which every rank knows until they are placed; then it keeps
 // its share.
 std::string place_all(const SolidBodies &solids, Config *config) {
@@ -257,8 +247,14 @@ std::string place_all(const SolidBodies &solids, Config *config) {
   config->places.clear();
   for (std::size_t s = 0; s < species.size(); ++s) {
     const bool all = is_known_everywhere(species[s]) || std::any_of(species.begin() + s, species.end(), is_random);
-    const KeptBodies kept = all ? KeptBodies{} : KeptBodies{rank, ranks};
-    if (std::string wrong = place_species(s, solids, kept, config); !wrong.empty()) return wrong;
+    std::vector<BodyPlace> seeded;
+    Places places;
+    const std::string wrong =
+        is_random(species[s])
+            ? seed_bodies(species, s, config->grid, solids, config->places, &seeded)
+            : place_bodies(species[s], config->grid, &places, all ? KeptBodies{} : KeptBodies{rank, ranks});
+    if (!wrong.empty()) return wrong;
+    config->places.push_back(is_random(species[s]) ? Places(seeded) : std::move(places));
   }
   for (std::size_t s = 0; s < species.size(); ++s)
     if (!is_known_everywhere(species[s])) config->places[s].share_among(rank, ranks);
@@ -266,7 +262,7 @@ std::string place_all(const SolidBodies &solids, Config *config) {
 }
 
 std::string check_point(const Config &config, const std::string &option, const Real3 &point) {
-  for (int d = 0; d < (flat(config) ? 2 : 3); ++d)
+  for (int d = 0; d < config.grid.dimension(); ++d)
     if (!(point[d] >= 0 && point[d] <= config.grid.length[d]))
       return "-" + option + ": " + "xyz"[d] + " = " + to_text(point[d]) + " is outside the box; accepted: 0 ... " +
              to_text(config.grid.length[d]);
@@ -281,7 +277,7 @@ std::string check_samples(const Config &config) {
     const ProfileSpec &profile = config.samples.profile[d];
     if (const std::string wrong = check_point(config, name, profile.line); !wrong.empty()) return wrong;
     if (d == 2 && flat(config) && profile.kind != ProfileSpec::Kind::none)
-      return "-profile_z: needs more than one cell in z";
+      return "-profile_z: there is one cell in z; accepted in 2-D: none";
   }
   return {};
 }
@@ -317,7 +313,8 @@ std::string check_restart(const Config &config) {
     std::error_code ignored;
     return std::filesystem::exists(path, ignored);
   };
-  if (!path.empty() && !on_rank_0(is_there)) return "-restart: there is no file or directory " + path;
+  if (!path.empty() && !on_rank_0(is_there))
+    return "-restart: there is no file or directory " + path + "; accepted: a checkpoint, or a directory with some";
   return {};
 }
 
@@ -329,13 +326,12 @@ std::string validate(Config *whole) {
                            check_snapshots, check_restart})
     if (const std::string wrong = check(config); !wrong.empty()) return wrong;
   for (const SpeciesSpec &spec : config.species)
-    for (const auto check : {check_species, check_contact})
+    for (const auto check : {check_shape, check_material, check_membrane, check_rigid, check_placement, check_contact})
       if (const std::string wrong = check(config, spec); !wrong.empty()) return wrong;
   SolidBodies solids;
-  for (int d = 0; d < 3; ++d)
-    for (const int high : {0, 1})
-      if (crossed(config, d, high))
-        solids.free[d][high] = (free_layers + 1) * config.grid.length[d] / config.grid.cells[d];
+  for_crossed_sides(config, [&](int d, int high) {
+    solids.free[d][high] = (free_layers + 1) * config.grid.length[d] / config.grid.cells[d];
+  });
   const bool random = std::any_of(config.species.begin(), config.species.end(), is_random);
   if (const std::string wrong = measure_voxels(config.species, config.grid, random, &solids, &whole->solid_volumes);
       !wrong.empty())

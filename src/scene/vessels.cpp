@@ -14,18 +14,14 @@ std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Re
                                      const std::vector<SideFlow> &sides) {
   std::vector<VesselFlow> flows;
   const DomainShape &grid = config.grid;
-  const int dimension = grid.cells[2] == 1 ? 2 : 3;
   for (const SpeciesSpec &spec : config.species) {
-    if (!is_tube(spec.shape) || spec.axis >= dimension) continue;
-    double section = 1;
-    for (int d = 0; d < dimension; ++d)
-      if (d != spec.axis) section *= grid.length[d];
+    if (!is_tube(spec.shape) || spec.axis >= grid.dimension()) continue;
     double drop = config.fluid.density * config.fluid.body_force.at(time)[spec.axis] * grid.length[spec.axis];
     for (const SideFlow &side : sides)
       if (side.direction == spec.axis) drop += side.high ? -side.pressure : side.pressure;
     VesselFlow &flow = flows.emplace_back();
     flow.species = spec.name;
-    flow.flow_rate = bulk[spec.axis] * section;
+    flow.flow_rate = bulk[spec.axis] * grid.side_area(spec.axis);
     if (flow.flow_rate != 0) flow.apparent_viscosity = drop / (flow.flow_rate * lumen_resistance(spec, grid));
   }
   return flows;

@@ -66,7 +66,8 @@ private:
           low[d] = std::min(low[d], corner[d]);
           high[d] = std::max(high[d], corner[d]);
         }
-    if (enclosed_volume(triangles_) == 0) return file + ": the surface encloses no volume";
+    if (enclosed_volume(triangles_) == 0)
+      return file + ": the surface encloses no volume; accepted: a closed surface around a body";
     return why_outside(file, grid, low, high);
   }
 
@@ -99,8 +100,8 @@ private:
                                  const Real3 &high) {
     for (int d = 0; d < 3; ++d)
       if (!(low[d] < grid.length[d] && high[d] > 0)) {
-        return file + print(": it is outside the box: %c = %.6g ... %.6g, the box is 0 ... %.6g", "xyz"[d], low[d],
-                            high[d], grid.length[d]);
+        return file + print(": it is outside the box: %c = %.6g ... %.6g; accepted: a part within 0 ... %.6g", "xyz"[d],
+                            low[d], high[d], grid.length[d]);
       }
     return {};
   }
@@ -171,12 +172,14 @@ std::string measure(const SpeciesSpec &spec, DomainShape grid, SolidMask *mask, 
       }
     if (mask) mask->add(window, fraction);
   });
-  for (int d = 0; d < (n[2] == 1 ? 2 : 3); ++d) sum *= grid.length[d] / n[d];
+  for (int d = 0; d < grid.dimension(); ++d) sum *= grid.spacing(d);
   *volume = sum;
   if (!wrong.empty()) return wrong;
-  if (sum == 0) return about(option_of(spec), spec.voxels.path + " has nothing solid in the box");
+  if (sum == 0)
+    return about(option_of(spec), spec.voxels.path + " has nothing solid in the box; accepted: a body that is");
   if (all && spec.law == Law::rigid)
-    return about(option_of(spec), spec.voxels.path + " fills all of the box and leaves no fluid");
+    return about(option_of(spec),
+                 spec.voxels.path + " fills all of the box and leaves no fluid; accepted: a part of the box");
   return {};
 }
 

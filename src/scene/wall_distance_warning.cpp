@@ -17,7 +17,7 @@ class Walls {
 public:
   explicit Walls(const Config &config)
       : config_(config),
-        dimension_(config.grid.cells[2] == 1 ? 2 : 3),
+        dimension_(config.grid.dimension()),
         film_(config.grid.longest_spacing() * (1 - 1e-9)),  // less the round-off of bodies a cell away
         posts_(config.grid, 2 * (config.grid.length[0] + config.grid.length[1] + config.grid.length[2]), 1) {
     shapes_.reserve(config.species.size());  // bodies point into it
@@ -43,7 +43,7 @@ public:
   bool are_near(const SpeciesSpec &spec, const Surface &surface, const BodyPlace &place) const {
     const ConvexBody shape(spec, dimension_, 0);
     const PlacedConvex body{&shape, place.centre, rotation(place.orientation)};
-    return is_near_side(surface, place) || !posts_.has_room_for(body, posts_.size()) ||
+    return is_near_side(surface, place) || !posts_.has_room_for(body) ||
            std::any_of(regions_.begin(), regions_.end(), [&](const Region &region) { return !region.holds(body); });
   }
 
@@ -81,8 +81,8 @@ PetscErrorCode find_membranes_near_walls(MPI_Comm comm, const Config &config, st
   int first = INT_MAX;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &spec = config.species[s];
-    if (!is_placed(spec) || spec.shape == Shape::voxels || spec.shape == Shape::state) continue;
-    const Surface surface(spec, config.grid.cells[2] == 1 ? 2 : 3);
+    if (!is_placed(spec) || is_from_file(spec.shape)) continue;
+    const Surface surface(spec, config.grid.dimension());
     for (const NumberedPlace &place : config.places[s].known)
       if (walls.are_near(spec, surface, place)) first = std::min(first, labels[s] + place.index);
   }

@@ -236,8 +236,8 @@ TEST(Placement, RefusesWhatDoesNotFit) {
   EXPECT_EQ(refusal_reason(species(Shape::sphere, 1, {2, 1, 2}), walls), "");
   EXPECT_EQ(refusal_reason(species(Shape::sphere, 2, {2, 2, 2}), walls), "");
   EXPECT_NE(refusal_reason(species(Shape::sphere, 2.1, {2, 2, 2}), open).find("long in x"), std::string::npos);
-  EXPECT_NE(refusal_reason(species(Shape::sphere, 1, {2, 2, 4.5}), open).find("outside the box"), std::string::npos);
-  EXPECT_NE(refusal_reason(species(Shape::sphere, 0, {2, 2, 2}), open).find("radius"), std::string::npos);
+  EXPECT_EQ(refusal_reason(species(Shape::sphere, 1, {2, 2, 4.5}), open),
+            "-body_centre: z = 4.5 is outside the box; accepted: within 0 ... 4");
   // A flat cell fits where its bounding sphere does not, until it is turned.
   SpeciesSpec cell = species(Shape::biconcave, 1.5, {2, 0.6, 2});
   EXPECT_EQ(refusal_reason(cell, walls), "");
@@ -248,17 +248,12 @@ TEST(Placement, RefusesWhatDoesNotFit) {
   EXPECT_EQ(refusal_reason(tube, walls), "");
   tube.orientation = {0, 0, 1};
   EXPECT_NE(refusal_reason(tube, walls), "");
-  SpeciesSpec slab = species(Shape::slab, 0, {});
-  slab.interval = {1, 1};
-  EXPECT_NE(refusal_reason(slab, walls).find("low < high"), std::string::npos);
   SpeciesSpec disc = species(Shape::sphere, 1, {2, 2, 99});
   EXPECT_EQ(refusal_reason(disc, box({16, 16, 1}, {4, 4, 4})), "");
   disc.orientation = {10, 0, 0};
   EXPECT_NE(refusal_reason(disc, box({16, 16, 1}, {4, 4, 4})).find("about z"), std::string::npos);
   disc = species(Shape::sphere, 1, {});
   disc.placement = Placement::lattice;
-  disc.count = {1, 1, 0};
-  EXPECT_NE(refusal_reason(disc, open), "");
   disc.count = {3, 1, 1};
   EXPECT_EQ(refusal_reason(disc, open), "");  // overlap is allowed
 }

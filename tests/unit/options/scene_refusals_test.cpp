@@ -103,6 +103,32 @@ TEST(SceneRefusals, InflowSidesThatDoNotCancel) {
     EXPECT_EQ(parse_line(scene + " " + in + fine).error, "") << fine;
 }
 
+// Sizes that do not give a body, and placements of what is one body.
+TEST(SceneRefusals, ShapesAndPlacements) {
+  const std::string tube = "-grid_cells 8,8,8 -a_shape constricted_tube -a_radius .2 -a_axis ";
+  const std::string ball = "-a_shape sphere -a_radius .2 ", flat = ball + "-grid_cells 8,8,1 ";
+  expect_refusals(
+      {{"-grid_cells 8,8,8 -a_shape sphere -a_radius 0", {"-a_radius: ", "accepted: "}},
+       {tube + "x -a_throat_length .4 -a_throat_radius .2",
+        {"-a_throat_radius: 0.2 is no narrower", "accepted: less than 0.2, -a_radius"}},
+       {tube + "x -a_throat_length 0 -a_throat_radius .1", {"-a_throat_length: ", "accepted: "}},
+       {"-grid_cells 8,8,1 -a_shape constricted_tube -a_radius .2 -a_throat_length .4 -a_throat_radius .1 -a_axis z",
+        {"-a_axis: z in 2-D", "accepted: x, y"}},
+       {tube + "x -a_throat_length .4 -a_throat_radius .1 -a_placement lattice", {"-a_placement: ", "accepted: one"}},
+       {"-grid_cells 8,8,8 -a_shape slab -a_interval 1,1", {"-a_interval: ", "accepted: low,high with low < high"}},
+       {"-grid_cells 8,8,8 -a_shape slab -a_interval 1,2",
+        {"-a_interval: the slab is outside the box", "accepted: a part of 0,1"}},
+       {ball + "-grid_cells 8,8,8 -a_placement lattice -a_count 1,1,0", {"-a_count: "}},
+       {flat + "-a_placement lattice -a_count 1,1,2", {"-a_count: 2 along z in 2-D", "accepted: 1 along z"}},
+       {ball + "-grid_cells 8,8,8 -a_centre .5,.5,2", {"-a_centre: z = 2 ", "accepted: within 0 ... 1"}},
+       {"-grid_cells 8,8,8 -a_shape sphere -a_radius 1", {"-a_shape: the body is 2 long in x", "accepted: at most 1"}},
+       {ball + "-grid_cells 8,8,8 -a_centre .5,.1,.5 -boundary_y wall",
+        {"-a_centre: the body reaches into the wall", "accepted: within 0 ... 1"}},
+       {flat + "-a_body_force 0,0,1", {"-a_body_force: 1 along z in 2-D", "accepted: 0 along z"}},
+       {flat + "-a_orientation 9,0,0", {"-a_orientation: ", "accepted: 0,0,angle"}}},
+      "-time_end 1 -species a -a_shear_modulus 1 ");
+}
+
 // What would turn into another shape, or cannot go where it is told.
 TEST(SceneRefusals, RigidBodiesThatMove) {
   expect_refusals(

@@ -1,5 +1,7 @@
 // The memory of the machine; runs that need more are refused with both numbers.
 #include "scene/memory.hpp"
+#include "scene/scene.hpp"
+#include "solver/synchronised_state.hpp"
 #include "support/command_line.hpp"
 
 #include <gtest/gtest.h>
@@ -78,4 +80,41 @@ TEST(Memory, PhasesAndBoxesCount) {
   const Config viscous = parse_line(line + "-ball_contact merge -ball_viscosity 2 -fluid_viscosity 1").config;
   EXPECT_DOUBLE_EQ(bytes_per_rank(viscous, {1, 1, 1}),
                    bytes_per_rank(merged, {1, 1, 1}) + 8 * (15 + 18.4) * std::pow(42, 3));
+}
+
+// The estimate names fields that many classes allocate: Solver::bytes() sums what they have after an output. Lists of
+// the faces at rigid bodies are not part of it; those of small bodies are short.
+TEST(Memory, IsWhatTheSolverAllocates) {
+  const std::string box = "-time_end 1 -grid_cells 32,32,32 -boundary_y wall -fluid_viscosity .1 ";
+  const std::string ball = "-species a -a_shape sphere -a_radius .3 -a_contact merge ";
+  const std::string soft = ball + "-a_shear_modulus 1 ";
+  const std::string cases[] = {
+      box,
+      box + "-method classic",
+      box + "-boundary_xmin pressure -boundary_xmax pressure -boundary_xmax_resistance 1",
+      box + soft,
+      box + soft + "-method classic",
+      box + soft + "-a_viscosity 1",
+      box + ball + "-a_shear_modulus 0 -a_surface_tension 1",
+      box + "-species a -a_shape sphere -a_radius .3 -a_law membrane -a_surface_shear_modulus 1",
+      box + "-species a -a_shape sphere -a_radius .1 -a_law rigid",
+      box + "-species a -a_shape sphere -a_radius .1 -a_law rigid -a_velocity .1,0,0"};
+  for (const std::string &line : cases) {
+    const Config config = parse_line(line).config;
+    Domain domain;
+    Solver solver;
+    std::string reason;
+    FlowExtremes extremes;
+    const std::vector<Phase> *phases = nullptr;
+    ASSERT_EQ(domain.create(PETSC_COMM_SELF, config.grid), 0);
+    ASSERT_EQ(build_scene(config, domain, &solver, &reason), 0);
+    ASSERT_EQ(reason, "") << line;
+    ASSERT_EQ(solver.measure(&extremes), 0);
+    ASSERT_EQ(solver.step(1e-4), 0);
+    ASSERT_EQ(solver.synchronised().phases(&phases), 0);
+    // In fields: rows are padded, and directions with boundaries have one more layer, which the estimate leaves out.
+    const double allocated = double(solver.bytes()) / (8. * double(domain.layout().size));
+    const double estimated = bytes_per_rank(config, {1, 1, 1}) / (8. * std::pow(32 + 2 * config.grid.ghosts, 3));
+    EXPECT_NEAR(allocated, estimated, 0.05 * estimated) << line;
+  }
 }
