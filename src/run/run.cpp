@@ -260,7 +260,7 @@ PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
   double thrown_away = 0;
   PetscCall(build_scene(config, domain, &run->solver, refusal));
   if (refusal->empty() && source.empty()) PetscCall(find_overlap(domain.comm(), config, &overlap, refusal));
-  if (refusal->empty()) PetscCall(find_unread_option(petsc_option_values(parsed.petsc_arguments), refusal));
+  if (refusal->empty()) PetscCall(find_unread_option(parsed.petsc, refusal));
   if (refusal->empty() && run->in_place)
     PetscCall(run->directory.open(domain.comm(), path, Earlier::continued, refusal));
   if (refusal->empty() && !source.empty())
