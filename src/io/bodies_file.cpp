@@ -60,17 +60,17 @@ std::string copy_file(const std::string &path, const std::string &target) {
 
 }  // namespace
 
-BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &columns)
-    : comm_(comm), path_(std::move(path)), has_(columns) {
-  for_numbers({}, has_.membranes, has_.loads, has_.bonds, [&](const char *name, const auto &value) {
-    columns_.push_back({name, static_cast<int>(sizeof value / sizeof(double)), 0});
-  });
-  for (const Column &column : columns_) width_ += column.width;
+BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const std::vector<BodyColumn> &columns)
+    : comm_(comm), path_(std::move(path)) {
+  for (const BodyColumn &column : columns) {
+    columns_.push_back({column.name, column.width, 0});
+    width_ += column.width;
+  }
   (void)MPI_Comm_rank(comm, &rank_);
   (void)MPI_Comm_size(comm, &ranks_);
 }
 
-PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::vector<BodyRecord> &owned) {
+PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::vector<double> &owned) {
   PetscFunctionBeginUser;
   const bool fewer = all.bodies < known_.bodies;
   std::string problem = fewer ? path_ + ": the number of bodies has become smaller" : std::string();
@@ -82,11 +82,7 @@ PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::v
   }
   if (known_.bodies == 0) PetscFunctionReturn(0);
   times_.push_back(time);
-  for (const BodyRecord &body : owned)
-    for_numbers(body, has_.membranes, has_.loads, has_.bonds, [&](const char *, const auto &value) {
-      const auto *first = reinterpret_cast<const double *>(&value);
-      waiting_.insert(waiting_.end(), first, first + sizeof value / sizeof(double));
-    });
+  waiting_.insert(waiting_.end(), owned.begin(), owned.end());
   const std::size_t bytes = times_.size() * (1 + width_ * known_.bodies) * sizeof(double);
   if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(write_waiting());
   PetscFunctionReturn(0);
@@ -104,7 +100,7 @@ std::string BodiesFile::cut(std::size_t rows) {
   Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, unlocked_access().get()));
   bool fine = bool(file);
   fine = fine && cut_rows(file.get(), "time", rows, &time_checksum_);
-  for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name, rows, &column.checksum);
+  for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name.c_str(), rows, &column.checksum);
   if (!file.close() || !fine) {
     std::filesystem::remove(target, error);
     return path_ +
@@ -166,7 +162,7 @@ bool BodiesFile::write_block(hid_t file, int begin, int end, const std::vector<d
         std::copy_n(values.data() + (b * rows + row) * width_ + first, width, to + b * width);
       column.checksum += checksum(to, bodies * width, ((written_ + row) * all + begin) * width);
     }
-    if (!write_part(file, column.name, {written_, rows, static_cast<hsize_t>(begin), bodies, width}, part))
+    if (!write_part(file, column.name.c_str(), {written_, rows, static_cast<hsize_t>(begin), bodies, width}, part))
       return false;
     first += width;
   }
@@ -194,8 +190,9 @@ PetscErrorCode BodiesFile::write_waiting() {
     fine = problem.empty() && (stored_ == bodies || write_bodies(file.get(), known_));
     for (Column &column : columns_) {
       if (written_ > 0 && stored_ != bodies)
-        fine = fine && set_bodies(file.get(), column.name, bodies, &column.checksum);
-      fine = fine && set_rows(file.get(), column.name, {written_, rows, 0, bodies, static_cast<hsize_t>(column.width)});
+        fine = fine && set_bodies(file.get(), column.name.c_str(), bodies, &column.checksum);
+      fine = fine &&
+             set_rows(file.get(), column.name.c_str(), {written_, rows, 0, bodies, static_cast<hsize_t>(column.width)});
     }
   }
   std::vector<double> values;
@@ -209,7 +206,8 @@ PetscErrorCode BodiesFile::write_waiting() {
     fine = fine && set_rows(file.get(), "time", {written_, rows, 0, 0, 0}) &&
            write_part(file.get(), "time", {written_, rows, 0, 0, 0}, times_) &&
            write_checksum(file.get(), "time", time_checksum_);
-    for (const Column &column : columns_) fine = fine && write_checksum(file.get(), column.name, column.checksum);
+    for (const Column &column : columns_)
+      fine = fine && write_checksum(file.get(), column.name.c_str(), column.checksum);
     if (!fine) std::filesystem::resize_file(target, 0, error);  // gives its space back, as HDF5 needs some to close it
     if (!file.close() || !fine) problem = path_ + ": cannot be written (disk full?)";
     if (problem.empty())

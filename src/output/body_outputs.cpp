@@ -117,17 +117,12 @@ std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::ve
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyMeasure &body = bodies[b];
     if (b > 0 && config_.species[bodies[b - 1].species].bears_load()) pass(config_.species[bodies[b - 1].species]);
-    BodyRecord record;
-    record.id = body.label;
-    record.species = config_.species[body.species].name;
-    record.centroid = body.centroid;
-    record.velocity = body.velocity;
-    record.volume = body.volume;
-    record.taylor_deformation = body.taylor_deformation;
-    record.inclination = body.inclination;
-    record.elastic_energy = body.elastic_energy;
+    BodyRecord &record = records.emplace_back();
+    record.body = body;
     record.largest_stretch = largest_stretch(bodies, surfaces, b);
-    record.rest_deformation = body.rest_deformation;
+    if (b < surfaces.size()) record.surface = surfaces[b];
+    if (b < measured.body_bonds.size() && measured.body_bonds[b].body == body.label)
+      record.bonds = measured.body_bonds[b];
     if (config_.species[body.species].law == Law::rigid && rigid < measured.loads.size()) {
       record.force = measured.loads[rigid].force;
       record.torque = measured.loads[rigid].torque;
@@ -135,36 +130,24 @@ std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::ve
       record.force = measured.surface_loads[elastic].force;
       record.torque = measured.surface_loads[elastic].torque;
     }
-    if (b < measured.body_bonds.size() && measured.body_bonds[b].body == body.label) {
-      const BodyBonds &bonds = measured.body_bonds[b];
-      record.bonds = bonds.bonds;
-      record.bond_force = bonds.force;
-      record.bond_tension = bonds.tension;
-      record.bond_age = bonds.age;
-    }
-    if (b < surfaces.size()) {
-      const SurfaceMeasure &surface = surfaces[b];
-      record.surface_area = surface.area;
-      record.shear_energy = surface.shear_energy;
-      record.area_energy = surface.area_energy;
-      record.bending_energy = surface.bending_energy;
-      record.turning_rate = surface.turning_rate;
-    }
-    records.push_back(record);
   }
   return records;
 }
 
 // The first of all bodies, on rank 0.
-PetscErrorCode Outputs::list_bodies(Summary *summary) const {
+PetscErrorCode Outputs::list_bodies(std::vector<Json> *list) const {
   std::vector<BodyMeasure> bodies;
   std::vector<SurfaceMeasure> surfaces;
   PetscFunctionBeginUser;
   const MPI_Comm comm = domain_->comm();
   const int all = solver_->bodies().bodies();
-  PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.bodies, &bodies));
-  if (membranes_) PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.surfaces, &surfaces));
-  summary->bodies = records(now_.measured, bodies, surfaces);
+  PetscCall(gather_bodies(comm, all, most_bodies, now_.bodies, &bodies));
+  if (membranes_) PetscCall(gather_bodies(comm, all, most_bodies, now_.surfaces, &surfaces));
+  for (const BodyRecord &record : records(now_, bodies, surfaces)) {
+    Json &json = list->emplace_back();
+    json.add("id", static_cast<long>(record.body.label)).add("species", config_.species[record.body.species].name);
+    for_numbers(record, true, true, false, [&](const char *name, const auto &value) { json.add(name, value); });
+  }
   PetscFunctionReturn(0);
 }
 

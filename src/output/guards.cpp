@@ -19,6 +19,14 @@ std::string where(const State &state, const Real3 &place) {
 // NaN is beyond every limit.
 bool beyond(double value, double limit) { return limit > 0 && !(value <= limit); }
 
+// Centre of the cell with this index, counted along x, then y, then z.
+Real3 place_of_cell(const Box &box, double index) {
+  const Int3 &n = box.domain_cells();
+  const Real3 &h = box.spacing();
+  const double i = std::fmod(index, n[0]), j = std::fmod(std::floor(index / n[0]), n[1]);
+  return {(i + 0.5) * h[0], (j + 0.5) * h[1], (std::floor(index / n[0] / n[1]) + 0.5) * h[2]};
+}
+
 // For extremes that met such a value.
 Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
   const State &state = solver.state();
@@ -168,13 +176,6 @@ PetscErrorCode place_of_divergence(const Domain &domain, const Field &velocity, 
   };
   PetscCall(largest(domain, divergence, place));
   PetscFunctionReturn(0);
-}
-
-Real3 place_of_cell(const Box &box, double index) {
-  const Int3 &n = box.domain_cells();
-  const Real3 &h = box.spacing();
-  const double i = std::fmod(index, n[0]), j = std::fmod(std::floor(index / n[0]), n[1]);
-  return {(i + 0.5) * h[0], (j + 0.5) * h[1], (std::floor(index / n[0] / n[1]) + 0.5) * h[2]};
 }
 
 }  // namespace eulastic

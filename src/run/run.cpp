@@ -99,20 +99,16 @@ PetscErrorCode open_outputs(Run *run) {
   ParseResult whole = run->parsed;
   if (run->in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
   PetscCall(write_text_file(run->solver.domain().comm(), run->directory.file("options.txt"), options_text(whole)));
-  PetscCall(run->outputs.open(run->directory.path(), run->position.outputs, run->in_place));
+  PetscCall(run->outputs.open(run->directory.path(), run->in_place));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode write_summary(const std::string &reason, Run *run) {
   PetscFunctionBeginUser;
-  Summary summary;
-  summary.exit_reason = reason;
-  for (const InputFile &file : run->parsed.inputs) summary.files.push_back({file.option, file.path, file.content});
-  summary.checkpoint = run->noted = run->checkpoints.newest();
-  summary.wall_seconds = run->position.wall_seconds;
-  summary.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
+  run->noted = run->checkpoints.newest();
   run->summary_failed = true;
-  PetscCall(run->outputs.write_summary(summary));
+  PetscCall(run->outputs.write_summary({reason, run->noted, run->position.wall_seconds,
+                                        run->total_before + MPI_Wtime() - run->begin, run->parsed.inputs}));
   run->summary_failed = false;
   PetscFunctionReturn(0);
 }
@@ -336,7 +332,7 @@ std::string last_word(const Run &run) {
 PetscErrorCode say_last_word(const Run &run) {
   PetscFunctionBeginUser;
   const MPI_Comm comm = run.solver.domain().comm();
-  for (const Summary::Verdict &verdict : run.outputs.verdicts())
+  for (const Verdict &verdict : run.outputs.verdicts())
     PetscCall(PetscPrintf(comm, "eulastic: %s\n", verdict_line(verdict).c_str()));
   PetscCall(PetscPrintf(comm, "%s\n", last_word(run).c_str()));
   PetscFunctionReturn(0);
