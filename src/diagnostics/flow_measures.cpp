@@ -151,39 +151,26 @@ private:
   std::vector<double> values_;
 };
 
-// Corrections on boundaries that volume crosses: each face has half a control volume, where the rows have counted a
-// whole one on low boundaries and none on high ones, and there is no shear along these boundaries.
-class SideFaces {
-public:
-  /// `viscosity`: weight of the squared gradients.
-  SideFaces(const Box &box, const Field &velocity, double viscosity, ExactSums *sums)
-      : box_(box), velocity_(velocity), viscosity_(viscosity), sums_(sums) {}
-
-  void add(int d, bool high) const {
-    const ConstView v = velocity_[d];
-    for_points(box_.boundary_faces(d, high), [&](int i, int j, int k) {
-      const double *q = &v(i, j, k), half = high ? 0.5 : -0.5;
-      sums_->add(speed_squared, half * q[0] * q[0]);
-      sums_->add(momentum_x + d, half * q[0]);
-      for (int e = 0; e < box_.dimension(); ++e)
-        if (e != d) add_shear(q, v.stride(e), e, Int3{i, j, k}[e]);
-    });
-  }
-
-private:
-  void add_shear(const double *q, std::ptrdiff_t step, int e, int index) const {
-    const double inverse_h = 1 / box_.spacing()[e];
-    const bool at_low = index == 0 && box_.touches_low(e);
-    sums_->add(gradient_squared, viscosity_ * (at_low ? 0.25 : 0.5) * square((q[0] - q[-step]) * inverse_h));
-    if (index == box_.cells()[e] - 1 && box_.touches_high(e))
-      sums_->add(gradient_squared, viscosity_ * 0.25 * square((q[step] - q[0]) * inverse_h));
-  }
-
-  const Box &box_;
-  const Field &velocity_;
-  double viscosity_;
-  ExactSums *sums_;
-};
+// Corrections on a boundary that volume crosses: each face has half a control volume, where the rows have counted a
+// whole one on low boundaries and none on high ones, and there is no shear along these boundaries. `viscosity`: weight
+// of the squared gradients.
+void add_boundary_faces(const Box &box, const Field &velocity, double viscosity, int d, bool high, ExactSums *sums) {
+  const ConstView v = velocity[d];
+  for_points(box.boundary_faces(d, high), [&](int i, int j, int k) {
+    const double *q = &v(i, j, k), half = high ? 0.5 : -0.5;
+    sums->add(speed_squared, half * q[0] * q[0]);
+    sums->add(momentum_x + d, half * q[0]);
+    for (int e = 0; e < box.dimension(); ++e) {
+      if (e == d) continue;
+      const int index = Int3{i, j, k}[e];
+      const std::ptrdiff_t step = v.stride(e);
+      const double inverse_h = 1 / box.spacing()[e], share = index == 0 && box.touches_low(e) ? 0.25 : 0.5;
+      sums->add(gradient_squared, viscosity * share * square((q[0] - q[-step]) * inverse_h));
+      if (index == box.cells()[e] - 1 && box.touches_high(e))
+        sums->add(gradient_squared, viscosity * 0.25 * square((q[step] - q[0]) * inverse_h));
+    }
+  });
+}
 
 double largest(const double *values, int n, double so_far) {
   for (int i = 0; i < n; ++i) so_far = std::max(so_far, std::abs(values[i]));
@@ -239,8 +226,8 @@ PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const F
     if (!part.first || !numbers.sides) return;
     for (const auto [d, high] : domain.sides())
       if (fluid_crosses((*numbers.sides)[d][high].kind))
-        SideFaces(domain, velocity, numbers.local_viscosity ? numbers.viscosity / numbers.density : 1, &sums)
-            .add(d, high);
+        add_boundary_faces(domain, velocity, numbers.local_viscosity ? numbers.viscosity / numbers.density : 1, d, high,
+                           &sums);
   };
   scope.flops(domain.cell_count() * dimension * (10 + 4 * dimension));
   double sum[flow_sums];
