@@ -106,11 +106,11 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
         "Mach number |v|/beta = %.3g of artificial compressibility is above -guard_mach %g; lower -time_step "
         "(%.3g now) or raise -acm_iterations_max",
         m.mach, control_.mach, state.dt);
-  } else if (beyond(m.resolved_drift, control_.volume_drift)) {
+  } else if (beyond(m.resolved_drift.value, control_.volume_drift)) {
     what = print(
         "the volume of body %d has changed by %.3g of its own, above -guard_volume_drift %g; more "
         "-grid_cells, -interface_scheme plic, or %s (%.3g now)",
-        m.drifting_body, m.resolved_drift, control_.volume_drift, pressure_advice_.c_str(), state.dt);
+        m.resolved_drift.label, m.resolved_drift.value, control_.volume_drift, pressure_advice_.c_str(), state.dt);
     find = nullptr;
     place = m.drifting_place;
   }

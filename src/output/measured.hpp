@@ -34,13 +34,12 @@ struct Measured {
   BondTotals bonds;                        ///< of the middle of the last step
   std::vector<BodyBonds> body_bonds;       ///< of the bodies that this rank owns; empty without adhesion
   double volume_drift = 0;                 ///< largest of all bodies
-  double resolved_drift = 0;               ///< largest of the bodies of at least a few cells at the start
-  int drifting_body = 0;                   ///< its label
-  Real3 drifting_place{};
-  double energy_made = 0;  ///< EnergyBudget::generated_share()
-  Largest stretch;         ///< of all bodies
-  Largest red_cell_area;   ///< of red cells: growth of the area since rest
-  double mach = 0;         ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
+  Largest resolved_drift;                  ///< of the bodies of at least a few cells at the start
+  Real3 drifting_place{};                  ///< centroid of the body with resolved_drift
+  double energy_made = 0;                  ///< EnergyBudget::generated_share()
+  Largest stretch;                         ///< of all bodies
+  Largest red_cell_area;                   ///< of red cells: growth of the area since rest
+  double mach = 0;  ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
 };
 
 }  // namespace eulastic

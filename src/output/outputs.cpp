@@ -86,8 +86,7 @@ PetscErrorCode Outputs::measure() {
     for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);
     solver_->bodies().set_first_volumes(std::move(volumes));
   }
-  PetscCall(measure_drift(&m));
-  PetscCall(measure_strains(&m));
+  PetscCall(measure_largest(&m));
   if (solver_->state().step > 0)
     position_.mach_max = std::max(position_.mach_max, m.mach);  // where the flow starts div v may be anything
   m.energy_made = energy_unknown_.empty() ? budget_now().generated_share() : 0;

@@ -95,8 +95,7 @@ private:
   void add_progress(const RunSummary &run, const Totals &totals, Json *json) const;
   void add_measures(const EnergyBudget &budget, Json *json) const;
   PetscErrorCode list_bodies(std::vector<Json> *bodies) const;
-  PetscErrorCode measure_drift(Measured *measured);
-  PetscErrorCode measure_strains(Measured *measured);
+  PetscErrorCode measure_largest(Measured *measured);
   double largest_stretch(const std::vector<BodyMeasure> &bodies, const std::vector<SurfaceMeasure> &surfaces,
                          std::size_t b) const;
   /// Of times within the last step.

@@ -92,8 +92,8 @@ void interpolate_between(const Measured &other, double share, Measured *measured
 
 }  // namespace
 
-// All but volume drifts, of phases as SynchronisedState::phases() has them; `measured`: of another time, or of this
-// velocity.
+// All but volume drifts and strains, of phases as SynchronisedState::phases() has them; `measured`: of another time, or
+// of this velocity.
 PetscErrorCode Outputs::look(Measured *measured) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
@@ -218,8 +218,7 @@ PetscErrorCode Outputs::record_middle(double dt) {
   PetscCall(look(&next));
   const double share = row_.dt / (row_.dt + dt);
   interpolate_between(next, share, &row_);
-  PetscCall(measure_drift(&row_));
-  PetscCall(measure_strains(&row_));
+  PetscCall(measure_largest(&row_));
   position_.mach_max = std::max(position_.mach_max, row_.mach);
   waits_ = false;
   seen_ = true;
