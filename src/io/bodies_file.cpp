@@ -100,7 +100,7 @@ std::string BodiesFile::cut(std::size_t rows) {
   Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, unlocked_access().get()));
   bool fine = bool(file);
   fine = fine && cut_rows(file.get(), "time", rows, &time_checksum_);
-  for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name.c_str(), rows, &column.checksum);
+  for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name, rows, &column.checksum);
   if (!file.close() || !fine) {
     std::filesystem::remove(target, error);
     return path_ +
@@ -162,7 +162,7 @@ bool BodiesFile::write_block(hid_t file, int begin, int end, const std::vector<d
         std::copy_n(values.data() + (b * rows + row) * width_ + first, width, to + b * width);
       column.checksum += checksum(to, bodies * width, ((written_ + row) * all + begin) * width);
     }
-    if (!write_part(file, column.name.c_str(), {written_, rows, static_cast<hsize_t>(begin), bodies, width}, part))
+    if (!write_part(file, column.name, {written_, rows, static_cast<hsize_t>(begin), bodies, width}, part))
       return false;
     first += width;
   }
@@ -190,9 +190,8 @@ PetscErrorCode BodiesFile::write_waiting() {
     fine = problem.empty() && (stored_ == bodies || write_bodies(file.get(), known_));
     for (Column &column : columns_) {
       if (written_ > 0 && stored_ != bodies)
-        fine = fine && set_bodies(file.get(), column.name.c_str(), bodies, &column.checksum);
-      fine = fine &&
-             set_rows(file.get(), column.name.c_str(), {written_, rows, 0, bodies, static_cast<hsize_t>(column.width)});
+        fine = fine && set_bodies(file.get(), column.name, bodies, &column.checksum);
+      fine = fine && set_rows(file.get(), column.name, {written_, rows, 0, bodies, static_cast<hsize_t>(column.width)});
     }
   }
   std::vector<double> values;
@@ -206,8 +205,7 @@ PetscErrorCode BodiesFile::write_waiting() {
     fine = fine && set_rows(file.get(), "time", {written_, rows, 0, 0, 0}) &&
            write_part(file.get(), "time", {written_, rows, 0, 0, 0}, times_) &&
            write_checksum(file.get(), "time", time_checksum_);
-    for (const Column &column : columns_)
-      fine = fine && write_checksum(file.get(), column.name.c_str(), column.checksum);
+    for (const Column &column : columns_) fine = fine && write_checksum(file.get(), column.name, column.checksum);
     if (!fine) std::filesystem::resize_file(target, 0, error);  // gives its space back, as HDF5 needs some to close it
     if (!file.close() || !fine) problem = path_ + ": cannot be written (disk full?)";
     if (problem.empty())

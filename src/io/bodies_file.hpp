@@ -24,9 +24,9 @@ struct BodySpecies {
   std::function<const std::string &(int label)> name;
 };
 
-/// A quantity of every body: the name of its dataset and the number of its values.
+/// A quantity of every body: the name of its dataset, a literal, and the number of its values.
 struct BodyColumn {
-  std::string name;
+  const char *name;
   int width;
 };
 
@@ -47,7 +47,7 @@ public:
 
 private:
   struct Column {
-    std::string name;
+    const char *name;
     int width;  ///< values per body
     std::uint64_t checksum;
   };
