@@ -191,7 +191,7 @@ void Outputs::add_progress(const RunSummary &run, const Totals &totals, Json *js
       .add("active_fraction", totals.evolving / cells)
       .add("acm_sweeps_per_step", ksp ? 0 : sweeps)
       .add("ksp_iterations_per_step", ksp ? sweeps : 0)
-      .add("rkl_stages_per_step", state.step > 0 ? double(solver_->stages()) / steps : 0)
+      .add("viscous_stages_per_step", state.step > 0 ? double(solver_->stages()) / steps : 0)
       .add("strain_forgotten", static_cast<long>(state.forgotten));
 }
 
