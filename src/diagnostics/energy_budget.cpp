@@ -25,16 +25,12 @@ void EnergyBudget::advance(double time, const EnergyState &state) {
   rate_ = rate;
   exchanged_ = exchanged;
   time_ = time;
-  update_made(state.unknown);
-  if (!started_) since_.fill(made_);
-  started_ = started_ || !(begins || state.starts);
-  compare_made();
-}
-
-void EnergyBudget::update_made(double unknown) {
-  least_ = std::min(least_, last_[1]);
+  least_ = std::min({least_, last_[1], 0.0});
   made_.made = -lost();
-  made_.held = last_[0] + (last_[1] - least_) + unknown;
+  made_.held = last_[0] + (last_[1] - least_) + state.unknown;
+  if (started_ == 0) since_.fill(made_);
+  if (!begins && !state.starts) started_ = 1;
+  compare_made();
 }
 
 // A share x has been generated since row s if M = made - uncertainty - x throughput has grown since by more than x
@@ -59,42 +55,21 @@ double EnergyBudget::lost_elastic() const { return work_[2] - (last_[1] - first_
 
 double EnergyBudget::lost_extended() const { return work_[3] - (last_[2] - first_[2]); }
 
-std::vector<double> EnergyBudget::numbers() const {
-  std::vector<double> all{time_};
-  for (const auto &part : {rate_, work_}) all.insert(all.end(), part.begin(), part.end());
-  for (const auto &part : {first_, last_}) all.insert(all.end(), part.begin(), part.end());
+std::vector<double *> EnergyBudget::numbers() {
+  std::vector<double *> all{&time_};
+  for (auto *part : {&rate_, &work_})
+    for (double &value : *part) all.push_back(&value);
+  for (auto *part : {&first_, &last_})
+    for (double &value : *part) all.push_back(&value);
   return all;
 }
 
-void EnergyBudget::set_numbers(const std::vector<double> &numbers) {
-  auto next = numbers.begin();
-  time_ = *next++;
-  for (auto *part : {&rate_, &work_}) std::copy_n(next, works, part->begin()), next += works;
-  for (auto *part : {&first_, &last_}) std::copy_n(next, energies, part->begin()), next += energies;
-  exchanged_ = std::fabs(rate_[0]);
-  update_made(0);
-  since_.fill(made_);
-  started_ = time_ >= 0;
-}
-
-std::vector<double> EnergyBudget::generated_numbers() const {
+std::vector<double *> EnergyBudget::generated_numbers() {
   // made_.held is left out, because the next row computes it again.
-  std::vector<double> all{made_share_, made_share_max_,   started_ ? 1.0 : 0.0, exchanged_,
-                          made_.made,  made_.uncertainty, made_.throughput,     least_};
-  for (const Made &m : since_) all.insert(all.end(), {m.made, m.uncertainty, m.throughput, m.held});
+  std::vector<double *> all{&made_share_, &made_share_max_,   &started_,         &exchanged_,
+                            &made_.made,  &made_.uncertainty, &made_.throughput, &least_};
+  for (Made &m : since_) all.insert(all.end(), {&m.made, &m.uncertainty, &m.throughput, &m.held});
   return all;
-}
-
-void EnergyBudget::set_generated_numbers(const std::vector<double> &numbers) {
-  auto next = numbers.begin();
-  made_share_ = *next++;
-  made_share_max_ = *next++;
-  started_ = *next++ != 0;
-  exchanged_ = *next++;
-  for (double *value : {&made_.made, &made_.uncertainty, &made_.throughput, &least_}) *value = *next++;
-  least_ = std::min(least_, 0.0);  // by definition, even if the file has another value
-  for (Made &m : since_)
-    for (double *value : {&m.made, &m.uncertainty, &m.throughput, &m.held}) *value = *next++;
 }
 
 }  // namespace eulastic

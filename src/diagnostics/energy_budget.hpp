@@ -51,12 +51,9 @@ public:
   /// The largest generated_share() of all rows.
   double generated_share_max() const { return made_share_max_; }
 
-  /// Works and energies for a checkpoint, and the numbers of generated_share(). set_numbers() alone starts
-  /// generated_share() anew.
-  std::vector<double> numbers() const;
-  void set_numbers(const std::vector<double> &numbers);
-  std::vector<double> generated_numbers() const;
-  void set_generated_numbers(const std::vector<double> &numbers);
+  /// The numbers that a checkpoint holds: works and energies, and those of generated_share().
+  std::vector<double *> numbers();
+  std::vector<double *> generated_numbers();
 
 private:
   /// Sums since the start at one row.
@@ -66,7 +63,6 @@ private:
     double throughput = 0;   ///< throughput, without the energy at the start
     double held = 0;         ///< kinetic energy, stored energy above least_, and EnergyState::unknown
   };
-  void update_made(double unknown);
   void compare_made();
 
   static constexpr int works = 4, energies = 3;
@@ -80,7 +76,7 @@ private:
   Made made_;             ///< present values
   std::array<Made, shares.size()> since_;  ///< reference rows of (36), one for each share
   double made_share_ = 0, made_share_max_ = 0;
-  bool started_ = false;     ///< whether a row after the start exists
+  double started_ = 0;       ///< 1 if a row after the start exists, else 0
   bool may_return_ = false;  ///< allow_energy_return()
 };
 

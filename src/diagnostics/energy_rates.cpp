@@ -95,67 +95,55 @@ void stress_power(const Box &box, const Phase &phase, const Field &velocity, con
   (box.dimension() == 2 ? power_2d : power_3d)(at, inverse, out);
 }
 
-// Power of moving walls: speed times traction of every tangential face beside them.
-class WallPower {
-public:
-  /// The walls act on solids alone if `viscosity` is null.
-  WallPower(const Box &box, const Field &velocity, const std::vector<const Phase *> &phases,
-            const EdgeViscosity *viscosity)
-      : box_(box), velocity_(velocity), phases_(phases), viscosity_(viscosity) {}
+// A moving wall, whose power is speed times traction of every tangential face beside it.
+struct MovingWall {
+  const Box &box;
+  const Field &velocity;
+  const std::vector<const Phase *> &phases;
+  const EdgeViscosity *viscosity;  // null: the wall acts on solids alone
+  int d;                           // its normal
+  bool high;
 
-  /// Adds the power of the low or high wall normal to d, which moves with `speed`.
-  void add(int d, bool high, const Real3 &speed, ExactSums *sums) const {
-    for (int c = 0; c < box_.dimension(); ++c)
-      if (c != d && speed[c] != 0) add(d, high, c, speed[c], sums);
-  }
-
-private:
-  void add(int d, bool high, int c, double speed, ExactSums *sums) const {
-    Int3 begin{}, end = box_.cells();
+  // Adds the power of its motion with `speed` along c.
+  void add_power(int c, double speed, ExactSums *sums) const {
+    Int3 begin{}, end = box.cells();
     begin[d] = high ? end[d] - 1 : 0;
     end[d] = begin[d] + 1;
     // A face on another wall does not move, so that the fluid has no shear there. Solids have the stress of the edge,
     // whose control volume is half of that of other edges.
     for (const bool corner_high : {false, true}) {
-      if (!box_.touches(c, corner_high) || box_.is_open(c, corner_high)) continue;
+      if (!box.touches(c, corner_high) || box.is_open(c, corner_high)) continue;
       Int3 first = begin, last = end;
-      first[c] = corner_high ? box_.cells()[c] : 0;
+      first[c] = corner_high ? box.cells()[c] : 0;
       last[c] = first[c] + 1;
       for_points({first, last}, [&](int i, int j, int k) {
-        sums->add(wall_power, 0.5 * speed * elastic_traction(d, high, c, {i, j, k}));
+        sums->add(wall_power, 0.5 * speed * elastic_traction(c, edge_of({i, j, k})));
       });
     }
-    if (box_.touches_low(c)) begin[c] = 1;
-    for_points({begin, end}, [&](int i, int j, int k) {
-      sums->add(wall_power, speed * traction(d, high, c, {i, j, k}));
-    });
+    if (box.touches_low(c)) begin[c] = 1;
+    for_points({begin, end}, [&](int i, int j, int k) { sums->add(wall_power, speed * traction(c, {i, j, k})); });
   }
 
-  static Int3 edge_of(int d, bool high, Int3 cell) {
+  Int3 edge_of(Int3 cell) const {
     cell[d] += high ? 1 : 0;
     return cell;
   }
 
-  /// Traction of the wall on the material inside, along c, divided by the spacing.
-  double traction(int d, bool high, int c, const Int3 &cell) const {
-    if (!viscosity_) return elastic_traction(d, high, c, cell);
-    const ConstView q = velocity_[c];
+  // Traction of the wall on the material inside, along c, divided by the spacing.
+  double traction(int c, const Int3 &cell) const {
+    const Int3 edge = edge_of(cell);
+    if (!viscosity) return elastic_traction(c, edge);
+    const ConstView q = velocity[c];
     const double *inside = &q(cell[0], cell[1], cell[2]), *ghost = inside + (high ? q.stride(d) : -q.stride(d));
-    const double h = box_.spacing()[d], viscous = viscosity_->at(c, d, edge_of(d, high, cell)) * (*ghost - *inside) / h;
-    return viscous / h + elastic_traction(d, high, c, cell);
+    const double h = box.spacing()[d], viscous = viscosity->at(c, d, edge) * (*ghost - *inside) / h;
+    return viscous / h + elastic_traction(c, edge);
   }
 
-  double elastic_traction(int d, bool high, int c, const Int3 &cell) const {
-    const Int3 edge = edge_of(d, high, cell);
+  double elastic_traction(int c, const Int3 &edge) const {
     double sum = 0;
-    for (const Phase *phase : phases_) sum += edge_stress(box_, *phase, c, d, edge[0], edge[1], edge[2]);
-    return (high ? sum : -sum) / box_.spacing()[d];
+    for (const Phase *phase : phases) sum += edge_stress(box, *phase, c, d, edge[0], edge[1], edge[2]);
+    return (high ? sum : -sum) / box.spacing()[d];
   }
-
-  const Box &box_;
-  const Field &velocity_;
-  const std::vector<const Phase *> &phases_;
-  const EdgeViscosity *viscosity_;
 };
 
 void add_elastic(const Box &box, const std::vector<Segment> &rows, const Field &velocity, const Phase &phase,
@@ -177,11 +165,16 @@ void add_elastic(const Box &box, const std::vector<Segment> &rows, const Field &
   }
 }
 
-// Adds the power of moving walls on the contents of a box.
-void add_wall_power(const Box &box, const WallPower &walls, const EnergyParameters &numbers, ExactSums *sums) {
+// Adds the power of moving walls on the contents of a box, on solids alone if `viscosity` is null.
+void add_wall_power(const Box &box, const Field &velocity, const std::vector<const Phase *> &phases,
+                    const EdgeViscosity *viscosity, const EnergyParameters &numbers, ExactSums *sums) {
   if (!numbers.sides) return;
-  for (const auto [d, high] : box.sides())
-    if (box.touches(d, high)) walls.add(d, high, (*numbers.sides)[d][high].motion.at(numbers.time), sums);
+  for (const auto [d, high] : box.sides()) {
+    if (!box.touches(d, high)) continue;
+    const Real3 speed = (*numbers.sides)[d][high].motion.at(numbers.time);
+    for (int c = 0; c < box.dimension(); ++c)
+      if (c != d && speed[c] != 0) MovingWall{box, velocity, phases, viscosity, d, high}.add_power(c, speed[c], sums);
+  }
 }
 
 }  // namespace
@@ -210,11 +203,10 @@ PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity,
     for (std::size_t b = own.begin; b < own.end; ++b) {
       const BodyInBox &body = bodies[b];
       if (!body.phase->material.elastic()) continue;
-      const std::vector<const Phase *> one{body.phase};
       add_elastic(*body.box, body.box->rows(), *body.velocity, *body.phase, &all);
-      add_wall_power(*body.box, WallPower(*body.box, *body.velocity, one, nullptr), numbers, &all);
+      add_wall_power(*body.box, *body.velocity, {body.phase}, nullptr, numbers, &all);
     }
-    if (part.first) add_wall_power(domain, WallPower(domain, velocity, elastic, &viscosity), numbers, &all);
+    if (part.first) add_wall_power(domain, velocity, elastic, &viscosity, numbers, &all);
   };
   double sum[sums];
   PetscCall(sum_row_parts(domain, sums, add, sum));

@@ -84,7 +84,7 @@ void viscous_dissipation(const Box &box, const Field &viscosity, const Field &ve
 }
 
 enum Sum { speed_squared, momentum_x, momentum_y, momentum_z, divergence_squared, gradient_squared, flow_sums };
-enum Maximum { max_x, max_y, max_z, max_speed_squared, max_divergence, maxima };
+enum Maximum { max_speed_squared, max_divergence, maxima };
 
 // Computes each measure for the cells of one row at a time.
 class RowMeasures {
@@ -92,39 +92,21 @@ public:
   RowMeasures(const Box &box, const Field &velocity)
       : box_(box), velocity_(velocity), dimension_(box.dimension()), n_(box.cells()[0]), values_(n_) {}
 
-  const double *squared_speed(const Segment &row) {
-    start();
-    for (int c = 0; c < dimension_; ++c) {
-      const double *q = velocity_[c].row(row.j, row.k);
-      for (int i = 0; i < n_; ++i) values_[i] += q[i] * q[i];
-    }
-    return values_.data();
-  }
-
-  const double *divergence(const Segment &row) {
-    start();
+  /// Sum over the components of term(q, next, 1/h), with the values q and next on both faces of a cell.
+  template <class Term>
+  const double *sum(const Segment &row, const Term &term) {
+    std::fill(values_.begin(), values_.end(), 0.0);
     for (int c = 0; c < dimension_; ++c) {
       const ConstView view = velocity_[c];
       const double *q = view.row(row.j, row.k), *next = q + view.stride(c), inverse_h = 1 / box_.spacing()[c];
-      for (int i = 0; i < n_; ++i) values_[i] += (next[i] - q[i]) * inverse_h;
-    }
-    return values_.data();
-  }
-
-  /// |v|^2 at the centres.
-  const double *squared_speed_at_centre(const Segment &row) {
-    start();
-    for (int c = 0; c < dimension_; ++c) {
-      const ConstView view = velocity_[c];
-      const double *q = view.row(row.j, row.k), *next = q + view.stride(c);
-      for (int i = 0; i < n_; ++i) values_[i] += square(0.5 * (q[i] + next[i]));
+      for (int i = 0; i < n_; ++i) values_[i] += term(q[i], next[i], inverse_h);
     }
     return values_.data();
   }
 
   /// Sum of (dv_a/dx_b)^2 in compact differences: dv_a/dx_a at the centre, the others on the cell's low edges.
   const double *squared_gradient(const Segment &row) {
-    start();
+    std::fill(values_.begin(), values_.end(), 0.0);
     for (int a = 0; a < dimension_; ++a)
       for (int b = 0; b < dimension_; ++b)
         if (a == b)
@@ -140,8 +122,6 @@ public:
   }
 
 private:
-  void start() { std::fill(values_.begin(), values_.end(), 0.0); }
-
   void add_difference(const Segment &row, int a, int b, int side, int begin, int end, double weight) {
     const ConstView view = velocity_[a];
     const double *q = view.row(row.j, row.k), *other = q + side * view.stride(b), inverse_h = 1 / box_.spacing()[b];
@@ -171,39 +151,26 @@ private:
   std::vector<double> values_;
 };
 
-// Corrections on boundaries that volume crosses: each face has half a control volume, where the rows have counted a
-// whole one on low boundaries and none on high ones, and there is no shear along these boundaries.
-class SideFaces {
-public:
-  /// `viscosity`: weight of the squared gradients.
-  SideFaces(const Box &box, const Field &velocity, double viscosity, ExactSums *sums)
-      : box_(box), velocity_(velocity), viscosity_(viscosity), sums_(sums) {}
-
-  void add(int d, bool high) const {
-    const ConstView v = velocity_[d];
-    for_points(box_.boundary_faces(d, high), [&](int i, int j, int k) {
-      const double *q = &v(i, j, k), half = high ? 0.5 : -0.5;
-      sums_->add(speed_squared, half * q[0] * q[0]);
-      sums_->add(momentum_x + d, half * q[0]);
-      for (int e = 0; e < box_.dimension(); ++e)
-        if (e != d) add_shear(q, v.stride(e), e, Int3{i, j, k}[e]);
-    });
-  }
-
-private:
-  void add_shear(const double *q, std::ptrdiff_t step, int e, int index) const {
-    const double inverse_h = 1 / box_.spacing()[e];
-    const bool at_low = index == 0 && box_.touches_low(e);
-    sums_->add(gradient_squared, viscosity_ * (at_low ? 0.25 : 0.5) * square((q[0] - q[-step]) * inverse_h));
-    if (index == box_.cells()[e] - 1 && box_.touches_high(e))
-      sums_->add(gradient_squared, viscosity_ * 0.25 * square((q[step] - q[0]) * inverse_h));
-  }
-
-  const Box &box_;
-  const Field &velocity_;
-  double viscosity_;
-  ExactSums *sums_;
-};
+// Corrections on a boundary that volume crosses: each face has half a control volume, where the rows have counted a
+// whole one on low boundaries and none on high ones, and there is no shear along these boundaries. `viscosity`: weight
+// of the squared gradients.
+void add_boundary_faces(const Box &box, const Field &velocity, double viscosity, int d, bool high, ExactSums *sums) {
+  const ConstView v = velocity[d];
+  for_points(box.boundary_faces(d, high), [&](int i, int j, int k) {
+    const double *q = &v(i, j, k), half = high ? 0.5 : -0.5;
+    sums->add(speed_squared, half * q[0] * q[0]);
+    sums->add(momentum_x + d, half * q[0]);
+    for (int e = 0; e < box.dimension(); ++e) {
+      if (e == d) continue;
+      const int index = Int3{i, j, k}[e];
+      const std::ptrdiff_t step = v.stride(e);
+      const double inverse_h = 1 / box.spacing()[e], share = index == 0 && box.touches_low(e) ? 0.25 : 0.5;
+      sums->add(gradient_squared, viscosity * share * square((q[0] - q[-step]) * inverse_h));
+      if (index == box.cells()[e] - 1 && box.touches_high(e))
+        sums->add(gradient_squared, viscosity * 0.25 * square((q[step] - q[0]) * inverse_h));
+    }
+  });
+}
 
 double largest(const double *values, int n, double so_far) {
   for (int i = 0; i < n; ++i) so_far = std::max(so_far, std::abs(values[i]));
@@ -218,7 +185,6 @@ FlowMeasures evaluate(const Box &box, const FlowParameters &numbers, const doubl
   m.kinetic_energy = 0.5 * numbers.density * sum[speed_squared] * volume;
   for (int c = 0; c < 3; ++c) m.bulk_velocity[c] = sum[momentum_x + c] / cells;
   // Maxima ignore NaN; adding 0 * sum restores it.
-  for (int c = 0; c < 3; ++c) m.velocity_max[c] = maximum[c] + 0 * sum[momentum_x + c];
   m.speed_max = std::sqrt(maximum[max_speed_squared]) + 0 * sum[speed_squared];
   const Real3 &h = box.spacing();
   const double smallest = *std::min_element(h.begin(), h.begin() + box.dimension());
@@ -239,19 +205,17 @@ PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const F
   EventScope scope(Event::sums);
   const int dimension = domain.dimension(), n = domain.cells()[0], first = domain.layout().begin[0];
   std::vector<std::vector<double>> found(row_parts(domain), std::vector<double>(maxima, 0.0));
-  const auto add = [&, dimension, n, first](const RowPart &part, ExactSums &sums) {
+  const auto add = [&](const RowPart &part, ExactSums &sums) {
     std::vector<double> &most = found[part.number];
     RowMeasures measure(domain, velocity);
     std::vector<double> dissipated(n);
     for (const Segment &row : part.rows(domain)) {
-      for (int c = 0; c < dimension; ++c) {
-        const double *q = velocity[c].row(row.j, row.k);
-        sums.add_row(momentum_x + c, q, n, first);
-        most[c] = largest(q, n, most[c]);
-      }
-      sums.add_row(speed_squared, measure.squared_speed(row), n, first);
-      most[max_speed_squared] = largest(measure.squared_speed_at_centre(row), n, most[max_speed_squared]);
-      const double *divergence = measure.divergence(row);
+      for (int c = 0; c < dimension; ++c) sums.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
+      sums.add_row(speed_squared, measure.sum(row, [](double q, double, double) { return q * q; }), n, first);
+      const auto squared_mean = [](double q, double next, double) { return square(0.5 * (q + next)); };
+      most[max_speed_squared] = largest(measure.sum(row, squared_mean), n, most[max_speed_squared]);
+      const auto difference = [](double q, double next, double inverse_h) { return (next - q) * inverse_h; };
+      const double *divergence = measure.sum(row, difference);
       most[max_divergence] = largest(divergence, n, most[max_divergence]);
       sums.add_row(divergence_squared, measure.squared(divergence), n, first);
       if (numbers.local_viscosity)
@@ -259,18 +223,15 @@ PetscErrorCode measure_flow(const Domain &domain, const Field &velocity, const F
       sums.add_row(gradient_squared, numbers.local_viscosity ? dissipated.data() : measure.squared_gradient(row), n,
                    first);
     }
-  };
-  const auto add_all = [&](const RowPart &part, ExactSums &sums) {
-    add(part, sums);
     if (!part.first || !numbers.sides) return;
     for (const auto [d, high] : domain.sides())
       if (fluid_crosses((*numbers.sides)[d][high].kind))
-        SideFaces(domain, velocity, numbers.local_viscosity ? numbers.viscosity / numbers.density : 1, &sums)
-            .add(d, high);
+        add_boundary_faces(domain, velocity, numbers.local_viscosity ? numbers.viscosity / numbers.density : 1, d, high,
+                           &sums);
   };
   scope.flops(domain.cell_count() * dimension * (10 + 4 * dimension));
   double sum[flow_sums];
-  PetscCall(sum_row_parts(domain, flow_sums, add_all, sum));
+  PetscCall(sum_row_parts(domain, flow_sums, add, sum));
   std::vector<double> maximum;
   PetscCall(reduce_maxima(domain.comm(), found, &maximum));
 

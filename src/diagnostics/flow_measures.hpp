@@ -23,7 +23,6 @@ struct FlowParameters {
 struct FlowMeasures {
   double kinetic_energy = 0;  ///< integral of rho |v|^2 / 2
   Real3 bulk_velocity{};      ///< means of u, v, w over the box
-  Real3 velocity_max{};       ///< max |u|, |v|, |w|
   double speed_max = 0;       ///< max |v| at cell centres
   double divergence_rms = 0;  ///< rms of div v h / U, with h the smallest spacing, U = max(speed_max, |f| dt), 0/0 = 0
   double divergence_max = 0;

@@ -6,53 +6,27 @@
 namespace eulastic {
 namespace {
 
-// Traction on one wall.
-class WallTraction {
-public:
-  WallTraction(const Box &box, int direction, bool high)
-      : box_(box), d_(direction), high_(high), last_(box.cells()[direction] - 1) {}
-
-  /// Adds to the traction along c the mean of value(cell) at both c-faces of each cell beside the wall.
-  template <class Value>
-  void add(int c, WallStress *stress, Value value) const {
-    Int3 end = box_.cells();
-    end[d_] = 1;
-    double *to = stress->components[c].data();
-    for_points({{0, 0, 0}, end}, [&](int i, int j, int k) {
-      Int3 cell{i, j, k};
-      cell[d_] = high_ ? last_ : 0;
-      const double low = value(cell);
-      ++cell[c];
-      *to++ += 0.5 * (low + value(cell));
-    });
-  }
-
-  // Adds the viscous stress of the momentum equation.
-  void add_viscous(int c, const EdgeViscosity &viscosity, double wall, ConstView q, WallStress *stress) const {
-    add(c, stress, [&](const Int3 &cell) {
-      Int3 edge = cell;
-      edge[d_] += high_ ? 1 : 0;
-      const double factor = 2 * viscosity.at(c, d_, edge) / box_.spacing()[d_];
-      return factor * (q(cell[0], cell[1], cell[2]) - wall);
-    });
-  }
-
-  void add_elastic(int c, const Phase &phase, WallStress *stress) const {
-    if (!phase.material.elastic()) return;
-    add(c, stress, [&](const Int3 &cell) {
-      Int3 edge = cell;
-      edge[d_] += high_ ? 1 : 0;
-      const double traction = edge_stress(box_, phase, c, d_, edge[0], edge[1], edge[2]);
-      return high_ ? -traction : traction;
-    });
-  }
-
-private:
-  const Box &box_;
-  int d_;
-  bool high_;
-  int last_;
-};
+// Adds to the traction along c the mean of value(cell) at both c-faces of each cell beside the wall. `value` takes the
+// cell and that of its edge on the wall.
+template <class Value>
+void add(const Box &box, int c, WallStress *stress, const Value &value) {
+  const int d = stress->direction, last = box.cells()[d] - 1;
+  Int3 end = box.cells();
+  end[d] = 1;
+  double *to = stress->components[c].data();
+  const auto at = [&](const Int3 &cell) {
+    Int3 edge = cell;
+    edge[d] += stress->high ? 1 : 0;
+    return value(cell, edge);
+  };
+  for_points({{0, 0, 0}, end}, [&](int i, int j, int k) {
+    Int3 cell{i, j, k};
+    cell[d] = stress->high ? last : 0;
+    const double low = at(cell);
+    ++cell[c];
+    *to++ += 0.5 * (low + at(cell));
+  });
+}
 
 }  // namespace
 
@@ -72,12 +46,19 @@ std::vector<WallStress> wall_shear_stress(const Box &box, const BoundaryConditio
     stress.sz = std::ptrdiff_t(n[0]) * n[1];
     for (auto &values : stress.components) values.assign(std::size_t(n[0]) * n[1] * n[2], 0.0);
     if (n[d] == 0) continue;
-    const WallTraction wall(box, d, high);
     const Real3 speed = sides[d][high].motion.at(time);
     for (int c = 0; c < box.dimension(); ++c) {
       if (c == d) continue;
-      wall.add_viscous(c, viscosity, speed[c], velocity[c], &stress);
-      for (const Phase &phase : phases) wall.add_elastic(c, phase, &stress);
+      add(box, c, &stress, [&, d = d](const Int3 &cell, const Int3 &edge) {  // as in the momentum equation
+        const double factor = 2 * viscosity.at(c, d, edge) / box.spacing()[d];
+        return factor * (velocity[c](cell[0], cell[1], cell[2]) - speed[c]);
+      });
+      for (const Phase &phase : phases)
+        if (phase.material.elastic())
+          add(box, c, &stress, [&, d = d, high = high](const Int3 &, const Int3 &edge) {
+            const double traction = edge_stress(box, phase, c, d, edge[0], edge[1], edge[2]);
+            return high ? -traction : traction;
+          });
     }
   }
   return all;

@@ -60,17 +60,17 @@ std::string copy_file(const std::string &path, const std::string &target) {
 
 }  // namespace
 
-BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &columns)
-    : comm_(comm), path_(std::move(path)), has_(columns) {
-  for_numbers({}, has_.membranes, has_.loads, has_.bonds, [&](const char *name, const auto &value) {
-    columns_.push_back({name, static_cast<int>(sizeof value / sizeof(double)), 0});
-  });
-  for (const Column &column : columns_) width_ += column.width;
+BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const std::vector<BodyColumn> &columns)
+    : comm_(comm), path_(std::move(path)) {
+  for (const BodyColumn &column : columns) {
+    columns_.push_back({column.name, column.width, 0});
+    width_ += column.width;
+  }
   (void)MPI_Comm_rank(comm, &rank_);
   (void)MPI_Comm_size(comm, &ranks_);
 }
 
-PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::vector<BodyRecord> &owned) {
+PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::vector<double> &owned) {
   PetscFunctionBeginUser;
   const bool fewer = all.bodies < known_.bodies;
   std::string problem = fewer ? path_ + ": the number of bodies has become smaller" : std::string();
@@ -82,11 +82,7 @@ PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::v
   }
   if (known_.bodies == 0) PetscFunctionReturn(0);
   times_.push_back(time);
-  for (const BodyRecord &body : owned)
-    for_numbers(body, has_.membranes, has_.loads, has_.bonds, [&](const char *, const auto &value) {
-      const auto *first = reinterpret_cast<const double *>(&value);
-      waiting_.insert(waiting_.end(), first, first + sizeof value / sizeof(double));
-    });
+  waiting_.insert(waiting_.end(), owned.begin(), owned.end());
   const std::size_t bytes = times_.size() * (1 + width_ * known_.bodies) * sizeof(double);
   if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(write_waiting());
   PetscFunctionReturn(0);

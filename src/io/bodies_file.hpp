@@ -8,7 +8,6 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "io/body_record.hpp"
 #include "io/hdf5_handle.hpp"
 #include "io/text_file.hpp"
 
@@ -25,20 +24,20 @@ struct BodySpecies {
   std::function<const std::string &(int label)> name;
 };
 
-/// What the file has beside the columns of all bodies.
-struct BodiesColumns {
-  bool membranes = false;  ///< what is known of those alone
-  bool loads = false;      ///< force and torque, where there are bodies that bear loads
-  bool bonds = false;      ///< of adhesion
+/// A quantity of every body: the name of its dataset, a literal, and the number of its values.
+struct BodyColumn {
+  const char *name;
+  int width;
 };
 
 class BodiesFile {
 public:
-  BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &columns = {});
+  BodiesFile(MPI_Comm comm, std::string path, const std::vector<BodyColumn> &columns);
 
-  /// Collective. One row; every rank has records of the bodies that it owns (BodyRange), always the same in the same
-  /// order; others may follow: in earlier rows those have the volume 0 and no other number. No bodies, no file.
-  PetscErrorCode add(double time, const BodySpecies &all, const std::vector<BodyRecord> &owned);
+  /// Collective. One row; every rank has the values of all columns of the bodies that it owns (BodyRange), one body
+  /// after the other, always the same bodies in the same order; others may follow: in earlier rows those have the
+  /// volume 0 and no other number. No bodies, no file.
+  PetscErrorCode add(double time, const BodySpecies &all, const std::vector<double> &owned);
   void moved_to(const std::string &path) { path_ = path; }
   /// Collective. All rows so far are on disk when this returns.
   PetscErrorCode flush();
@@ -64,7 +63,6 @@ private:
   BodySpecies known_;  ///< who the bodies are
   std::vector<Column> columns_;
   int width_ = 0;  ///< values of a body in a row
-  BodiesColumns has_;
   static constexpr std::size_t unknown = ~std::size_t(0);
   std::vector<double> times_, waiting_;  ///< rows that wait: (rows), (rows, owned bodies, width_)
   std::uint64_t time_checksum_ = 0;

@@ -62,7 +62,7 @@ std::string Range::text() const {
   return text;
 }
 
-std::string read_reals(const std::string &text, const Range &range, double *target, std::size_t count) {
+std::string read_numbers(const std::string &text, const Range &range, double *target, std::size_t count) {
   return read_list(text, range, target, count);
 }
 
@@ -75,12 +75,12 @@ std::string read_points(const std::string &text, std::vector<std::array<double, 
   return {};
 }
 
-std::string read_integers(const std::string &text, const Range &range, int *target, std::size_t count) {
+std::string read_numbers(const std::string &text, const Range &range, int *target, std::size_t count) {
   return read_list(text, range, target, count);
 }
 
-std::string read_integer(const std::string &text, const Range &range, long *target) {
-  return read_list(text, range, target, 1);
+std::string read_numbers(const std::string &text, const Range &range, long *target, std::size_t count) {
+  return read_list(text, range, target, count);
 }
 
 bool is_boolean_word(const std::string &text) {

@@ -21,9 +21,9 @@ struct Range {
 extern const Range any_number, positive, not_negative, at_least_one;
 
 /// All `read_*` return what is wrong, or nothing; the targets are written only when all is well.
-std::string read_reals(const std::string &text, const Range &range, double *target, std::size_t count);
-std::string read_integers(const std::string &text, const Range &range, int *target, std::size_t count);
-std::string read_integer(const std::string &text, const Range &range, long *target);
+std::string read_numbers(const std::string &text, const Range &range, double *target, std::size_t count);
+std::string read_numbers(const std::string &text, const Range &range, int *target, std::size_t count);
+std::string read_numbers(const std::string &text, const Range &range, long *target, std::size_t count);
 std::string read_boolean(const std::string &text, bool *target);
 /// Index into `names`.
 std::string read_choice(const std::string &text, const std::vector<std::string> &names, int *target);

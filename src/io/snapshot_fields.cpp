@@ -66,9 +66,15 @@ void SnapshotFields::mix_tensors(const std::vector<Phase> &phases) {
   }
 }
 
-std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &selection, const Field &velocity,
-                                                   const Field &pressure, const std::vector<Phase> &phases) {
+std::vector<SnapshotField> SnapshotFields::collect(const std::vector<std::string> &wanted, Stored precision,
+                                                   const Field &velocity, const Field &pressure,
+                                                   const std::vector<Phase> &phases) {
   std::vector<SnapshotField> fields;
+  const auto is_wanted = [&](const char *name) {
+    return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  };
+  const bool solid_fraction = is_wanted("solid_fraction"), left_cauchy_green = is_wanted("left_cauchy_green");
+  const bool body = is_wanted("body") && !phases.empty() && phases[0].label;
   const auto add = [&](const std::string &name, ConstView view, const Staggering &staggering, Stored stored) {
     SnapshotField &field = fields.emplace_back();
     field.format = {name, staggering, stored};
@@ -77,29 +83,29 @@ std::vector<SnapshotField> SnapshotFields::collect(const SnapshotSelection &sele
   const auto add_tensor = [&](const CarriedTensor &tensor, const std::string &suffix) {
     for (int c = 0; c < tensor.field.count(); ++c)
       add("left_cauchy_green_" + tensor.components()[c].name() + suffix, tensor.field[c], tensor.components()[c].at,
-          selection.precision);
+          precision);
   };
   const Field &flow = velocity_;
-  if (selection.velocity) {
+  if (is_wanted("velocity")) {
     for (int c = 0; c < velocity.count(); ++c)
-      add(std::string("velocity_") + axes[c], velocity[c], at_face[c], selection.precision);
+      add(std::string("velocity_") + axes[c], velocity[c], at_face[c], precision);
     centre_velocity(velocity);
-    add("velocity", flow[0], at_centre, selection.precision);
+    add("velocity", flow[0], at_centre, precision);
     fields.back().components = {flow[0], flow[1], flow[2]};
   }
-  if (selection.pressure) add("pressure", pressure[0], at_centre, selection.precision);
+  if (is_wanted("pressure")) add("pressure", pressure[0], at_centre, precision);
   if (phases.empty()) return fields;
   const bool several = phases.size() > 1;
   if (several) {
-    if (selection.solid_fraction) mix_fractions(phases);
-    if (selection.left_cauchy_green) mix_tensors(phases);
-    if (selection.body) mix_labels(phases);
+    if (solid_fraction) mix_fractions(phases);
+    if (left_cauchy_green) mix_tensors(phases);
+    if (body) mix_labels(phases);
   }
   const auto add_phase = [&](const Field &fraction, const CarriedTensor &tensor, const Field &label,
                              const std::string &suffix) {
-    if (selection.solid_fraction) add("solid_fraction" + suffix, fraction[0], at_centre, selection.precision);
-    if (selection.left_cauchy_green) add_tensor(tensor, suffix);
-    if (selection.body) add("body" + suffix, label[0], at_centre, Stored::int32);
+    if (solid_fraction) add("solid_fraction" + suffix, fraction[0], at_centre, precision);
+    if (left_cauchy_green) add_tensor(tensor, suffix);
+    if (body) add("body" + suffix, label[0], at_centre, Stored::int32);
   };
   if (several) add_phase(fraction_, tensor_, label_, "");
   for (const Phase &phase : phases)

@@ -6,22 +6,17 @@
 
 namespace eulastic {
 
-/// Groups of datasets (docs/outputs.md).
-struct SnapshotSelection {
-  bool velocity = true, pressure = true, solid_fraction = true, left_cauchy_green = false, body = true;
-  Stored precision = Stored::float32;
-};
-
 /// Views of the state, and the fields that are made for the file: the velocity at centres and, with several species,
 /// what they have in common.
 class SnapshotFields {
 public:
   explicit SnapshotFields(const Box &box) : box_(&box) {}
 
-  /// One ghost layer must be valid in `velocity` and, with several species, in their fractions. The result holds
-  /// views: it is good until the state or this object changes.
-  std::vector<SnapshotField> collect(const SnapshotSelection &selection, const Field &velocity, const Field &pressure,
-                                     const std::vector<Phase> &phases);
+  /// Collects the groups of datasets that `wanted` names (-snapshot_fields); bodies without labels have no dataset. One
+  /// ghost layer must be valid in `velocity` and, with several species, in their fractions. The result holds views: it
+  /// is good until the state or this object changes.
+  std::vector<SnapshotField> collect(const std::vector<std::string> &wanted, Stored precision, const Field &velocity,
+                                     const Field &pressure, const std::vector<Phase> &phases);
 
 private:
   void centre_velocity(const Field &velocity);

@@ -11,7 +11,7 @@ void add_region(Rows &rows, AdhesiveRegion &area) {
   region.default_note = "everywhere";
   region.read = [&area](const std::string &value) {
     double corners[6];
-    std::string wrong = read_reals(value, any_number, corners, 6);
+    std::string wrong = read_numbers(value, any_number, corners, 6);
     for (int d = 0; d < 3 && wrong.empty(); ++d) {
       area.low[d] = corners[d];
       area.high[d] = corners[3 + d];
@@ -72,10 +72,10 @@ void add_adhesion(Rows &rows, Config &config) {
     for (const AdhesionPair &pair : config.adhesion.pairs) names.push_back(pair.name);
     return join(names, ",");
   };
-  Option &seed = rows.integer("adhesion_seed", config.adhesion.seed, {0, false, 4294967295.},
-                              "seed of the random numbers with which bonds form and break");
-  seed.only_with = "-adhesion";
-  seed.applies = [&config] { return !config.adhesion.pairs.empty(); };
+  rows.limit("-adhesion", [&config] { return !config.adhesion.pairs.empty(); });
+  rows.integer("adhesion_seed", config.adhesion.seed, {0, false, 4294967295.},
+               "seed of the random numbers with which bonds form and break");
+  rows.end_limit();
   for (AdhesionPair &pair : config.adhesion.pairs) {
     rows.group = "Adhesion " + pair.name;
     std::string name = pair.name;

@@ -20,112 +20,99 @@ void add_kinds(Rows &rows, Config &config) {
 
 bool is_number(const std::string &text) {
   double number;
-  return read_reals(text, any_number, &number, 1).empty();
+  return read_numbers(text, any_number, &number, 1).empty();
 }
 
 bool is_vector(const std::string &text) {
   Real3 vector;
-  return read_reals(text, any_number, vector.data(), 3).empty();
+  return read_numbers(text, any_number, vector.data(), 3).empty();
 }
 
 // The rows of one boundary. Each is accepted only on boundaries of some kinds.
-class BoundaryRows {
-public:
-  BoundaryRows(Rows &rows, Config &config, int d, int high)
-      : rows_(rows), config_(config), spec_(config.openings[d][high]), d_(d), high_(high), first_(rows.rows.size()) {
-    rows.prefix = "boundary_" + side_name(d, high != 0) + "_";
-  }
-  ~BoundaryRows() { rows_.prefix.clear(); }
+struct BoundaryRows {
+  Rows &rows;
+  Config &config;
+  OpeningSpec &spec;
+  int d, high;
 
-  void add_velocity() {
-    Option &row = rows_.add("velocity", "length/time",
-                            "wall: its velocity, whose normal component must be 0; inflow: the mean velocity into the "
-                            "box over the open area; multiplied by cos(angular_frequency t + phase)");
+  void add_velocity() const {
+    only_on({BoundaryKind::wall, BoundaryKind::inflow}, "wall or inflow");
+    Option &row = rows.add("velocity", "length/time",
+                           "wall: its velocity, whose normal component must be 0; inflow: the mean velocity into the "
+                           "box over the open area; multiplied by cos(angular_frequency t + phase)");
     row.accepted = std::string("for a wall 3 numbers, separated by commas; for inflow ") + number_or_table;
     row.default_note = "0,0,0 for a wall; inflow requires it or the flow rate, unless the profile is a file";
     row.names_file = [](const std::string &value) { return !is_number(value) && !is_vector(value); };
-    row.read = [&spec = spec_](const std::string &value) { return read_text(value, &spec.velocity); };
-    row.text = [&config = config_, &spec = spec_, d = d_, high = high_] {
+    row.read = [&spec = spec](const std::string &value) { return read_text(value, &spec.velocity); };
+    row.text = [&config = config, &spec = spec, d = d, high = high] {
       Real3 of_wall{};
       if (config.boundary.is(BoundaryKind::inflow, d, high)) return spec.velocity;
-      if (!spec.velocity.empty() && !read_reals(spec.velocity, any_number, of_wall.data(), 3).empty())
+      if (!spec.velocity.empty() && !read_numbers(spec.velocity, any_number, of_wall.data(), 3).empty())
         return spec.velocity;
-      return list(of_wall.data(), 3, to_text);
+      return list(of_wall.data(), 3);
     };
-    rows_.real("angular_frequency", spec_.frequency, not_negative, "rad/time",
-               "angular frequency of the velocity or the flow rate");
-    rows_.real("phase", spec_.phase, any_number, "rad", "phase of the velocity or the flow rate");
-    only_on({BoundaryKind::wall, BoundaryKind::inflow}, "wall or inflow");
+    rows.oscillation("", spec.frequency, spec.phase, " of the velocity or the flow rate");
   }
 
-  void add_inflow() {
-    course("flow_rate", spec_.flow_rate, "volume/time",
-           "flow rate into the box, in 2-D per depth, instead of the velocity");
+  void add_inflow() const {
+    only_on({BoundaryKind::inflow}, "inflow");
+    number_or_file("flow_rate", spec.flow_rate, "volume/time",
+                   "flow rate into the box, in 2-D per depth, instead of the velocity");
     Option &profile =
-        rows_.path("profile", spec_.profile,
-                   "profile of the velocity into the box: uniform; developed, that of a steady duct flow; or one "
-                   "number per cell of the boundary, from a text or HDF5 file (docs/howto/vessel.md)");
+        rows.path("profile", spec.profile,
+                  "profile of the velocity into the box: uniform; developed, that of a steady duct flow; or one "
+                  "number per cell of the boundary, from a text or HDF5 file (docs/howto/vessel.md)");
     profile.accepted = "uniform, developed, or a path, of HDF5 also FILE:DATASET";
     profile.names_file = [](const std::string &value) { return value != "uniform" && value != "developed"; };
-    rows_.real(
-        "generator_length", spec_.generator_length, not_negative, "length",
-        "length of the inlet generator beside the boundary: bodies and flow that pass its end also enter through the "
-        "boundary");
-    rows_.zero_is("off");
-    only_on({BoundaryKind::inflow}, "inflow");
+    rows.real("generator_length", spec.generator_length, not_negative, "length",
+              "length of the inlet generator beside the boundary: bodies and flow that pass its end also enter through "
+              "the boundary");
+    rows.zero_is("off");
   }
 
-  void add_pressure() {
-    course("pressure", spec_.pressure, "pressure", "pressure at the boundary");
-    rows_.real("resistance", spec_.resistance, not_negative, "pressure time/volume",
-               "resistance: the pressure increases by this times the flow rate out of the box");
-    rows_.real("windkessel", spec_.windkessel, not_negative, "",
-               "three-element Windkessel R,C,R: a resistance, then a capacitance (volume/pressure) in parallel with a "
-               "second resistance; 0,0,0 is none");
-    rows_.real("windkessel_initial_pressure", spec_.windkessel_start, any_number, "pressure",
-               "pressure of the capacitance of the Windkessel at t = 0");
+  void add_pressure() const {
     only_on({BoundaryKind::pressure}, "pressure");
+    number_or_file("pressure", spec.pressure, "pressure", "pressure at the boundary");
+    rows.real("resistance", spec.resistance, not_negative, "pressure time/volume",
+              "resistance: the pressure increases by this times the flow rate out of the box");
+    rows.real("windkessel", spec.windkessel, not_negative, "",
+              "three-element Windkessel R,C,R: a resistance, then a capacitance (volume/pressure) in parallel with a "
+              "second resistance; 0,0,0 is none");
+    rows.real("windkessel_initial_pressure", spec.windkessel_start, any_number, "pressure",
+              "pressure of the capacitance of the Windkessel at t = 0");
   }
 
-  void add_table_ends() {
-    rows_.real("table_period", spec_.period, not_negative, "time",
-               "period after which a table repeats (docs/howto/numbers.md)");
-    rows_.zero_is("off");
-    rows_.boolean("table_hold", spec_.hold,
-                  "whether a table that does not cover the run is continued by its first and its last value");
-    rows_.allow_change(first_);
+  void add_table_ends() const {
     only_on({BoundaryKind::inflow, BoundaryKind::pressure}, "inflow or pressure");
+    rows.may_change = true;
+    rows.real("table_period", spec.period, not_negative, "time",
+              "period after which a table repeats (docs/howto/numbers.md)");
+    rows.zero_is("off");
+    rows.boolean("table_hold", spec.hold,
+                 "whether a table that does not cover the run is continued by its first and its last value");
+    rows.may_change = false;
   }
 
 private:
   // A number, or a table over time.
-  void course(const std::string &name, std::string &target, const std::string &unit, const std::string &doc) {
-    Option &row = rows_.path(name, target, doc);
+  void number_or_file(const std::string &name, std::string &target, const std::string &unit,
+                      const std::string &doc) const {
+    Option &row = rows.path(name, target, doc);
     row.unit = unit;
     row.accepted = number_or_table;
     row.names_file = [](const std::string &value) { return !is_number(value); };
   }
 
-  // The rows since the last call are accepted only on boundaries of these kinds.
-  void only_on(const std::vector<BoundaryKind> &kinds, const std::string &names) {
-    const std::string side = std::string{"xyz"[d_]};
-    std::string needed = "-boundary_" + side + (high_ ? "max " : "min ") + names;
+  // The rows that follow are accepted only on boundaries of these kinds.
+  void only_on(const std::vector<BoundaryKind> &kinds, const std::string &names) const {
+    const std::string side = std::string{"xyz"[d]};
+    std::string needed = "-boundary_" + side + (high ? "max " : "min ") + names;
     if (kinds[0] == BoundaryKind::wall) needed += ", or -boundary_" + side + " wall";
-    for (std::size_t r = first_; r < rows_.rows.size(); ++r) {
-      rows_.rows[r].only_with = needed;
-      rows_.rows[r].applies = [&config = config_, kinds, d = d_, high = high_] {
-        return std::any_of(kinds.begin(), kinds.end(),
-                           [&](BoundaryKind kind) { return config.boundary.is(kind, d, high); });
-      };
-    }
-    first_ = rows_.rows.size();
+    rows.limit(needed, [&config = config, kinds, d = d, high = high] {
+      return std::any_of(kinds.begin(), kinds.end(),
+                         [&](BoundaryKind kind) { return config.boundary.is(kind, d, high); });
+    });
   }
-
-  Rows &rows_;
-  Config &config_;
-  OpeningSpec &spec_;
-  int d_, high_;
-  std::size_t first_;
 };
 
 }  // namespace
@@ -134,12 +121,15 @@ void add_boundaries(Rows &rows, Config &config) {
   add_kinds(rows, config);
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2; ++high) {
-      BoundaryRows side(rows, config, d, high);
+      rows.prefix = "boundary_" + side_name(d, high != 0) + "_";
+      const BoundaryRows side{rows, config, config.openings[d][high], d, high};
       side.add_velocity();
       side.add_inflow();
       side.add_pressure();
       side.add_table_ends();
     }
+  rows.prefix.clear();
+  rows.end_limit();
 }
 
 }  // namespace eulastic

@@ -7,6 +7,9 @@
 #include "scene/config.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <optional>
+#include <type_traits>
 
 namespace eulastic {
 
@@ -20,11 +23,15 @@ inline std::string several(std::size_t count, const std::string &noun, const Ran
          range.text() + (count == 1 ? "" : ", separated by commas");
 }
 
-/// "1,2,3" of so many values.
-template <class T, class Text>
-std::string list(const T *values, std::size_t count, const Text &text) {
+/// "1,2,3".
+template <class T>
+std::string list(const T *values, std::size_t count) {
   Names items;
-  for (std::size_t i = 0; i < count; ++i) items.push_back(text(values[i]));
+  for (std::size_t i = 0; i < count; ++i)
+    if constexpr (std::is_integral_v<T>)
+      items.push_back(std::to_string(values[i]));
+    else
+      items.push_back(to_text(values[i]));
   return join(items, ",");
 }
 
@@ -32,7 +39,25 @@ std::string list(const T *values, std::size_t count, const Text &text) {
 class Rows {
 public:
   std::vector<Option> rows;
+  // What the rows that follow have in common:
   std::string group, prefix;
+  bool may_change = false;  ///< between a checkpoint and the run that continues from it
+
+  /// The rows that follow apply only while `applies` holds, which `only_with` says.
+  void limit(const std::string &only_with, const std::function<bool()> &applies) {
+    only_with_ = only_with;
+    applies_ = applies;
+  }
+  /// The rows that follow apply only while `target` has one of the `wanted` values. `names`: values of `-option`.
+  template <class T>
+  void restrict(const std::string &option, T &target, const Names &names, const std::vector<T> &wanted) {
+    Names text;
+    for (T value : wanted) text.push_back(names[static_cast<int>(value)]);
+    limit("-" + option + " " + join(text, " or "),
+          [&target, wanted] { return std::find(wanted.begin(), wanted.end(), target) != wanted.end(); });
+  }
+  /// The rows that follow always apply.
+  void end_limit() { limit("", nullptr); }
 
   Option &add(const std::string &name, const std::string &unit, const std::string &doc) {
     Option option;
@@ -40,40 +65,39 @@ public:
     option.name = prefix + name;
     option.unit = unit;
     option.doc = doc;
+    option.may_change = may_change;
+    option.only_with = only_with_;
+    option.applies = applies_;
     rows.push_back(option);
     return rows.back();
   }
-  Option &reals(const std::string &name, double *target, std::size_t count, const Range &range, const std::string &unit,
-                const std::string &doc) {
+  /// T is double, int or long.
+  template <class T>
+  Option &numbers(const std::string &name, T *target, std::size_t count, const Range &range, const std::string &unit,
+                  const std::string &doc) {
     Option &row = add(name, unit, doc);
-    row.accepted = several(count, "number", range);
-    row.read = [=](const std::string &value) { return read_reals(value, range, target, count); };
-    row.text = [=] { return list(target, count, to_text); };
+    row.accepted = several(count, std::is_integral_v<T> ? "integer" : "number", range);
+    row.read = [=](const std::string &value) { return read_numbers(value, range, target, count); };
+    row.text = [=] { return list(target, count); };
     return row;
   }
   Option &real(const std::string &name, double &target, const Range &range, const std::string &unit,
                const std::string &doc) {
-    return reals(name, &target, 1, range, unit, doc);
+    return numbers(name, &target, 1, range, unit, doc);
   }
   template <std::size_t N>
   Option &real(const std::string &name, std::array<double, N> &target, const Range &range, const std::string &unit,
                const std::string &doc) {
-    return reals(name, target.data(), N, range, unit, doc);
+    return numbers(name, target.data(), N, range, unit, doc);
   }
-  Option &integers(const std::string &name, int *target, std::size_t count, const Range &range,
-                   const std::string &doc) {
-    Option &row = add(name, "", doc);
-    row.accepted = several(count, "integer", range);
-    row.read = [=](const std::string &value) { return read_integers(value, range, target, count); };
-    row.text = [=] { return list(target, count, [](int n) { return std::to_string(n); }); };
-    return row;
+  /// The rows of cos(angular_frequency t + phase), which multiplies a quantity.
+  void oscillation(const std::string &start, double &frequency, double &phase, const std::string &of_what = {}) {
+    real(start + "angular_frequency", frequency, not_negative, "rad/time", "angular frequency" + of_what);
+    real(start + "phase", phase, any_number, "rad", "phase" + of_what);
   }
-  Option &integer(const std::string &name, long &target, const Range &range, const std::string &doc) {
-    Option &row = add(name, "", doc);
-    row.accepted = several(1, "integer", range);
-    row.read = [&target, range](const std::string &value) { return read_integer(value, range, &target); };
-    row.text = [&target] { return std::to_string(target); };
-    return row;
+  template <class T>
+  Option &integer(const std::string &name, T &target, const Range &range, const std::string &doc) {
+    return numbers(name, &target, 1, range, "", doc);
   }
   Option &boolean(const std::string &name, bool &target, const std::string &doc) {
     Option &row = add(name, "", doc);
@@ -112,37 +136,37 @@ public:
     return row;
   }
 
-  /// Row r, or the last one, also accepts `word` for 0, and prints it.
-  void zero_is(const std::string &word, std::size_t r) {
-    Option &row = rows[r];
+  /// A member that may be unset, which has no text then. `add_row` adds the row of a value.
+  template <class T, class AddRow>
+  Option &optional(std::optional<T> &target, const AddRow &add_row) {
+    const auto value = std::make_shared<T>();
+    Option &row = add_row(*value);
+    row.read = [read = row.read, value, &target](const std::string &text) {
+      std::string wrong = read(text);
+      if (wrong.empty()) target = *value;
+      return wrong;
+    };
+    row.text = [text = row.text, value, &target] {
+      if (!target) return std::string();
+      *value = *target;
+      return text();
+    };
+    return row;
+  }
+
+  /// The last row also accepts `word` for 0, and prints it.
+  void zero_is(const std::string &word) {
+    Option &row = rows.back();
     const std::size_t range = row.accepted.find(" >= 0");
     if (range != std::string::npos) row.accepted.replace(range, 5, " > 0");
     row.accepted = word + ", or " + row.accepted;
     row.read = [read = row.read, word](const std::string &value) { return read(value == word ? "0" : value); };
     row.text = [text = row.text, word] { return text() == "0" ? word : text(); };
   }
-  void zero_is(const std::string &word) { zero_is(word, rows.size() - 1); }
 
-  /// The rows from `first` on may differ between a checkpoint and the run that continues from it.
-  void allow_change(std::size_t first) {
-    for (std::size_t r = first; r < rows.size(); ++r) rows[r].may_change = true;
-  }
-
-  /// The rows from `first` on apply only while `applies` holds, which `only_with` says.
-  void limit(std::size_t first, const std::string &only_with, const std::function<bool()> &applies) {
-    for (std::size_t r = first; r < rows.size(); ++r) {
-      rows[r].only_with = only_with;
-      rows[r].applies = applies;
-    }
-  }
-  /// The rows from `first` on apply only while `target` has one of the `wanted` values. `names`: values of `-option`.
-  template <class T>
-  void restrict(std::size_t first, const std::string &option, T &target, const Names &names, std::vector<T> wanted) {
-    Names text;
-    for (T value : wanted) text.push_back(names[static_cast<int>(value)]);
-    limit(first, "-" + option + " " + join(text, " or "),
-          [&target, wanted] { return std::find(wanted.begin(), wanted.end(), target) != wanted.end(); });
-  }
+private:
+  std::string only_with_;
+  std::function<bool()> applies_;
 };
 
 /// Pairs that -adhesion names, of species that are known. Returns what is wrong, or nothing.

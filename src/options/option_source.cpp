@@ -90,9 +90,7 @@ std::string quote_word(const std::string &word) {
   return '"' + text + '"';
 }
 
-namespace {
-
-std::string read_entries(const std::string &path, int depth, std::vector<Source> *sources) {
+std::string read_options_file(const std::string &path, std::vector<Source> *sources, int depth) {
   constexpr int deepest = 8;
   constexpr std::size_t most = 100;
   std::string text, line;
@@ -115,17 +113,11 @@ std::string read_entries(const std::string &path, int depth, std::vector<Source>
     entries.pop_back();
     if (brought_in.empty()) return "-options_file: a value is missing; accepted: a path" + where;
     const std::string beside = (std::filesystem::path(path).parent_path() / brought_in).string();
-    if (const std::string wrong = read_entries(beside, depth + 1, sources); !wrong.empty()) return wrong + where;
+    if (const std::string wrong = read_options_file(beside, sources, depth + 1); !wrong.empty()) return wrong + where;
   }
   for (Entry &entry : entries) entry.options_file = path;
   sources->push_back(std::move(entries));
   return {};
-}
-
-}  // namespace
-
-std::string read_options_file(const std::string &path, std::vector<Source> *sources) {
-  return read_entries(path, 0, sources);
 }
 
 std::string find_input(const Entry &entry) {

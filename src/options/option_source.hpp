@@ -20,8 +20,9 @@ using Source = std::vector<Entry>;
 /// `options_file`: set to the one positional word; null where there must be none.
 std::string read_words_as_entries(const std::vector<std::string> &words, const std::string &where,
                                   std::vector<Entry> *entries, std::string *options_file);
-/// Appends one source for each file; files that -options_file includes come before the including file.
-std::string read_options_file(const std::string &path, std::vector<Source> *sources);
+/// Appends one source for each file; files that -options_file includes come before the including file. `depth`: how
+/// many files include this one.
+std::string read_options_file(const std::string &path, std::vector<Source> *sources, int depth = 0);
 /// The file (or FILE:DATASET) that an entry names: the path itself, or if it does not exist, the path relative to the
 /// options file.
 std::string find_input(const Entry &entry);

@@ -13,20 +13,20 @@ const Names method_names{"fast", "classic"};
 
 void add_grid(Rows &rows, Config &config) {
   rows.group = "Grid";
-  rows.integers("grid_cells", config.grid.cells.data(), 3, at_least_one,
-                "number of cells in x, y, z; 1 in z selects 2-D, where shapes ignore z");
+  rows.numbers("grid_cells", config.grid.cells.data(), 3, at_least_one, "",
+               "number of cells in x, y, z; 1 in z selects 2-D, where shapes ignore z");
   rows.real("grid_length", config.grid.length, positive, "length", "size of the box");
-  const std::size_t processors = rows.rows.size();
+  rows.may_change = true;
   for (int d = 0; d < 3; ++d) {
-    rows.integers(std::string("da_processors_") + "xyz"[d], &config.grid.processors[d], 1, {0, false},
-                  std::string("ranks along ") + "xyz"[d]);
+    rows.integer(std::string("da_processors_") + "xyz"[d], config.grid.processors[d], {0, false},
+                 std::string("ranks along ") + "xyz"[d]);
     rows.zero_is("auto");
   }
-  rows.integers("threads", &config.threads, 1, {1, false, 1024},
-                "threads per rank; they share its planes of cells, in 2-D its rows, and its bodies in boxes");
+  rows.integer("threads", config.threads, {1, false, 1024},
+               "threads per rank; they share its planes of cells, in 2-D its rows, and its bodies in boxes");
   rows.boolean("load_balance", config.balance,
                "load balance: cut y and z by the estimated cost of the cells, at the start and at restarts");
-  rows.allow_change(processors);
+  rows.may_change = false;
 }
 
 void add_flow(Rows &rows, Config &config) {
@@ -38,20 +38,18 @@ void add_flow(Rows &rows, Config &config) {
   rows.boolean("fluid_inertia", fluid.inertia, "whether the momentum equation has the term v.grad v");
   rows.real("body_force", fluid.body_force.force, any_number, "length/time^2",
             "force per mass F cos(angular_frequency t + phase) on fluid and bodies");
-  rows.real("body_force_angular_frequency", fluid.body_force.frequency, not_negative, "rad/time", "angular frequency");
-  rows.real("body_force_phase", fluid.body_force.phase, any_number, "rad", "phase");
+  rows.oscillation("body_force_", fluid.body_force.frequency, fluid.body_force.phase);
 
   rows.group = "Initial flow";
   InitialFlow &initial = config.initial;
   rows.choice("initial_velocity", initial.kind, initial_velocity_names(),
               "flow at t = 0; shear_wave_ab: component a varies along b");
-  Option &amplitude =
-      rows.real("initial_velocity_amplitude", initial.amplitude, any_number, "length/time", "amplitude of that flow");
-  amplitude.only_with = "-initial_velocity other than zero, uniform and couette";
-  amplitude.applies = [&initial] {
+  rows.limit("-initial_velocity other than zero, uniform and couette", [&initial] {
     return initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
            initial.kind != InitialVelocity::couette;
-  };
+  });
+  rows.real("initial_velocity_amplitude", initial.amplitude, any_number, "length/time", "amplitude of that flow");
+  rows.end_limit();
   rows.real("initial_velocity_mean", initial.mean, any_number, "length/time",
             "mean velocity that is added to the initial flow");
   rows.path("initial_state", config.initial_state,
@@ -96,6 +94,7 @@ void add_method(Rows &rows, Config &config) {
   rows.choice("method", method.kind, method_names,
               "fast: second order in time, with bodies at half steps; classic: the scheme of the original paper");
   const std::size_t parts = rows.rows.size();
+  rows.restrict("method", method.kind, method_names, {MethodKind::fast});
   rows.choice("viscous_scheme", method.viscous, {"auto", "rkl", "explicit"},
               "rkl: super time stepping RKL2; explicit: a single stage; auto: rkl, but an implicit step where "
               "viscosities differ and no body is rigid");
@@ -107,21 +106,21 @@ void add_method(Rows &rows, Config &config) {
               "B outside bodies: extrapolated, or reset to I");
   rows.choice("elastic_force", method.elastic_force, {"linear", "constant"},
               "elastic force within a step: linear in time, or that of its middle");
-  rows.restrict(parts, "method", method.kind, method_names, {MethodKind::fast});
+  rows.end_limit();
+  rows.may_change = true;
   const Names pressure_names{"acm", "smac", "ksp"};
-  const std::size_t pressure = rows.rows.size();
   rows.choice("pressure_solver", method.pressure, pressure_names,
               "artificial compressibility, the exact Poisson solution by FFT, or PETSc's by any -pressure_ksp_type and "
               "-pressure_pc_type");
-  const std::size_t first = rows.rows.size();
-  rows.integers("acm_iterations_max", &method.acm_sweeps_max, 1, at_least_one,
-                "largest number of pressure iterations per step");
+  rows.restrict("pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
+  rows.integer("acm_iterations_max", method.acm_sweeps_max, at_least_one,
+               "largest number of pressure iterations per step");
   rows.real("acm_tolerance", method.acm_tolerance, positive, "", "iterate until rms(div v) h/U is below this");
-  rows.integers("acm_search_directions", &method.acm_memory, 1, {0, false, 4},
-                "number of increments of earlier steps that are used as search directions");
+  rows.integer("acm_search_directions", method.acm_memory, {0, false, 4},
+               "number of increments of earlier steps that are used as search directions");
   rows.boolean("acm_coarse", method.acm_coarse, "precondition the iterations by a V-cycle over coarse grids");
-  rows.restrict(first, "pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
-  rows.allow_change(pressure);
+  rows.end_limit();
+  rows.may_change = false;
   for (std::size_t r = parts; r < rows.rows.size(); ++r) rows.rows[r].default_note = by_method(rows.rows[r], method);
 }
 
@@ -140,7 +139,7 @@ void add_profile(Rows &rows, ProfileSpec &profile, int d) {
     if (value == "mean") return std::string();
     profile.kind = ProfileSpec::Kind::line;
     double place[2];
-    std::string wrong = read_reals(value, any_number, place, 2);
+    std::string wrong = read_numbers(value, any_number, place, 2);
     if (wrong.empty()) profile.line[a] = place[0], profile.line[b] = place[1];
     return wrong;
   };
@@ -160,7 +159,7 @@ void add_samples(Rows &rows, Config &config) {
   probes.read = [&samples](const std::string &value) { return read_points(value, &samples.probes); };
   probes.text = [&samples] {
     Names points;
-    for (const Real3 &p : samples.probes) points.push_back(list(p.data(), 3, to_text));
+    for (const Real3 &p : samples.probes) points.push_back(list(p.data(), 3));
     return join(points, ":");
   };
   for (int d = 0; d < 3; ++d) add_profile(rows, samples.profile[d], d);
@@ -199,14 +198,14 @@ void add_output(Rows &rows, Config &config) {
 void add_checkpoints(Rows &rows, Config &config) {
   rows.group = "Checkpoints and restart";
   CheckpointControl &checkpoint = config.checkpoint;
-  const std::size_t regular = rows.rows.size();
+  rows.limit("-checkpoint_keep > 0", [&checkpoint] { return checkpoint.keep > 0; });
   rows.real("checkpoint_interval", checkpoint.interval, not_negative, "time",
             "simulated time between checkpoints; off: only by wall time and at the end");
   rows.zero_is("off");
   rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
             "wall time between checkpoints; off: only by simulated time and at the end");
   rows.zero_is("off");
-  rows.limit(regular, "-checkpoint_keep > 0", [&checkpoint] { return checkpoint.keep > 0; });
+  rows.end_limit();
   rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
                "number of checkpoints that are kept; a complete run leaves one of its end, with 0 none");
   rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",
@@ -219,26 +218,26 @@ void add_checkpoints(Rows &rows, Config &config) {
 
 void add_guards(Rows &rows, Config &config) {
   rows.group = "Guards: bounds that stop the run";
-  const std::size_t first = rows.rows.size();
   GuardControl &guard = config.guard;
-  rows.real("guard_cfl", guard.cfl, not_negative, "", "CFL number, the sum of max |v_i| dt/h_i");
-  rows.real("guard_divergence", guard.divergence, not_negative, "", "rms(div v) h/U, as in series.csv");
-  rows.real("guard_mach", guard.mach, not_negative, "",
-            "largest |v| over the sound speed of artificial compressibility, where there is one");
-  rows.real("guard_volume_drift", guard.volume_drift, not_negative, "", "relative change of the volume of any body");
-  rows.real(
-      "guard_energy_growth", guard.energy_growth, not_negative, "",
-      "energy made by the numerics within any time, relative to the energy held at its beginning and supplied since");
-  rows.real("guard_memory", guard.memory, not_negative, "",
-            "memory that the ranks of a node need, relative to its physical memory; checked before the start");
-  for (std::size_t r = first; r < rows.rows.size(); ++r) rows.zero_is("off", r);
+  const auto bound = [&rows](const std::string &name, double &target, const std::string &doc) {
+    rows.real("guard_" + name, target, not_negative, "", doc);
+    rows.zero_is("off");
+  };
+  bound("cfl", guard.cfl, "CFL number, the sum of max |v_i| dt/h_i");
+  bound("divergence", guard.divergence, "rms(div v) h/U, as in series.csv");
+  bound("mach", guard.mach, "largest |v| over the sound speed of artificial compressibility, where there is one");
+  bound("volume_drift", guard.volume_drift, "relative change of the volume of any body");
+  bound("energy_growth", guard.energy_growth,
+        "energy made by the numerics within any time, relative to the energy held at its beginning and supplied since");
+  bound("memory", guard.memory,
+        "memory that the ranks of a node need, relative to its physical memory; checked before the start");
 }
 
 void add_program(Rows &rows, Config &config) {
   rows.group = "Program";
   rows.boolean("check_only", config.check_only, "validate the case, print derived numbers and stop");
-  rows.integers("ranks", &config.ranks, 1, {0, false, 1e8},
-                "number of ranks that -check_only assumes; auto: those of mpiexec");
+  rows.integer("ranks", config.ranks, {0, false, 1e8},
+               "number of ranks that -check_only assumes; auto: those of mpiexec");
   rows.zero_is("auto");
   rows.boolean("print_options", config.print_options,
                "validate the case, print every option with its resolved value and stop");
@@ -253,7 +252,7 @@ void add_program(Rows &rows, Config &config) {
 
 // All that may change at a restart.
 void add_running(Rows &rows, Config &config) {
-  const std::size_t first = rows.rows.size();
+  rows.may_change = true;
   rows.group = "Time";
   rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
   rows.real("time_step", config.time.step, not_negative, "time", "time step; auto: the largest stable one");
@@ -264,7 +263,6 @@ void add_running(Rows &rows, Config &config) {
   add_checkpoints(rows, config);
   add_guards(rows, config);
   add_program(rows, config);
-  rows.allow_change(first);
 }
 
 }  // namespace

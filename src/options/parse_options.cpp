@@ -281,10 +281,7 @@ std::string parse_into(const std::vector<std::string> &arguments, ParseResult *r
   wrong = read_sources(&sources, &result->config, &result->warnings);
   for (const Source &source : sources)
     for (const Entry &entry : source)
-      if (is_petsc_option(entry.name)) {
-        result->petsc_arguments.push_back("-" + entry.name);
-        if (!entry.value.empty()) result->petsc_arguments.push_back(entry.value);
-      }
+      if (is_petsc_option(entry.name)) result->petsc[entry.name] = entry.value;
   return wrong;
 }
 
@@ -349,14 +346,13 @@ std::vector<InputFile> hash_input_files(const Config &config) {
 ParseResult parse(const std::vector<std::string> &arguments, const std::string &petsc_options) {
   ParseResult result;
   result.petsc_options = petsc_options;
-  result.petsc_arguments = {"-skip_petscrc"};
   result.alone = arguments.empty() && petsc_options.empty();
   if (result.alone) result.message = usage_text();
   answer(arguments, &result);
   if (!result.message.empty()) return result;
   if (result.error.empty()) result.error = parse_into(arguments, &result);
   if (result.error.empty()) result.inputs = hash_input_files(result.config);
-  if (!result.error.empty()) result.petsc_arguments.resize(1);  // no -log_view of a run that is none
+  if (!result.error.empty()) result.petsc.clear();  // no -log_view of a run that is none
   result.error = one_line(result.error);
   return result;
 }
@@ -383,7 +379,7 @@ std::string options_text(const ParseResult &result) {
       if (file.option == option.name) text += content_mark + file.content + "\n";
   }
   group.clear();
-  for (const auto &[name, value] : petsc_option_values(result.petsc_arguments)) {
+  for (const auto &[name, value] : result.petsc) {
     if (!is_pressure_ksp_option(name)) continue;
     if (group.empty()) text += "\n# " + (group = "PETSc's part of the pressure solver") + "\n";
     line(name, value);

@@ -1,6 +1,7 @@
 // Parses the command line into a validated Config, without PETSc. Collective; all ranks get the same result.
 #pragma once
 
+#include "options/petsc_options.hpp"
 #include "scene/config.hpp"
 
 #include <string>
@@ -22,9 +23,8 @@ struct ParseResult {
   std::string message;                ///< -help, -version: print to stdout and exit 0
   bool alone = false;                 ///< no arguments were given: the message is the usage, the exit code 2
   std::string program = "eulastic";   ///< as it was started
-  /// For PetscInitialize, program name excluded: PETSc's own options of all sources, behind -skip_petscrc.
-  /// PETSC_OPTIONS is in it: unset that variable before PetscInitialize.
-  std::vector<std::string> petsc_arguments;
+  /// PETSc's own options of all sources, PETSC_OPTIONS included: unset that variable before PetscInitialize.
+  PetscOptionValues petsc;
   std::string petsc_options;  ///< PETSC_OPTIONS as found
 };
 

@@ -89,16 +89,13 @@ std::string check_petsc_value(const std::string &name, const std::string &value,
   });
 }
 
-PetscOptionValues petsc_option_values(const std::vector<std::string> &petsc_arguments) {
-  const auto name_at = [&](std::size_t a) {
-    const std::string &word = petsc_arguments[a];
-    return word[0] == '-' && is_petsc_option(word.substr(1)) ? word.substr(1) : std::string();
-  };
-  PetscOptionValues options;
-  for (std::size_t a = 0; a < petsc_arguments.size(); ++a)
-    if (const std::string name = name_at(a); !name.empty())
-      options[name] = a + 1 < petsc_arguments.size() && name_at(a + 1).empty() ? petsc_arguments[a + 1] : "";
-  return options;
+std::vector<std::string> petsc_arguments(const PetscOptionValues &options) {
+  std::vector<std::string> words{"-skip_petscrc"};
+  for (const auto &[name, value] : options) {
+    words.push_back("-" + name);
+    if (!value.empty()) words.push_back(value);
+  }
+  return words;
 }
 
 PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string *refusal) {

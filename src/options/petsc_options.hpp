@@ -21,9 +21,10 @@ bool is_pressure_ksp_option(const std::string &name);
 /// exist, nor have the name of a file of the run in `output_directory`.
 std::string check_petsc_value(const std::string &name, const std::string &value, const std::string &output_directory);
 
+/// Names without dashes, and their values, which may be empty.
 using PetscOptionValues = std::map<std::string, std::string>;
-/// Those among `petsc_arguments`, without dashes; the last of equal names wins, as in PETSc.
-PetscOptionValues petsc_option_values(const std::vector<std::string> &petsc_arguments);
+/// The command line of these options, program name excluded, for PetscInitialize: -skip_petscrc comes first.
+std::vector<std::string> petsc_arguments(const PetscOptionValues &options);
 /// Collective; after everything has been set up. `refusal`: one line about an option that no rank's PETSc has read.
 /// Options that only print are exempt: PETSc reads them during the solution or at the end.
 PetscErrorCode find_unread_option(const PetscOptionValues &options, std::string *refusal);

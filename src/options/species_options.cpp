@@ -24,18 +24,12 @@ void add_voxel_rows(Rows &rows, VoxelSpec &voxels) {
 }
 
 void add_anchored_row(Rows &rows, SpeciesSpec &spec) {
-  bool unused = false;
-  Option &row = rows.boolean(
-      "anchored", unused,
-      "whether the body is anchored, a wall that hardly moves (slab, tube, vessel): B is extrapolated linearly, with "
-      "second order at rest");
+  Option &row = rows.optional(spec.anchored, [&](bool &anchored) -> Option & {
+    return rows.boolean("anchored", anchored,
+                        "whether the body is anchored, a wall that hardly moves (slab, tube, vessel): B is "
+                        "extrapolated linearly, with second order at rest");
+  });
   row.default_note = "true for slab and tubes, else false";
-  row.read = [&spec](const std::string &value) {
-    bool anchored = false;
-    std::string wrong = read_boolean(value, &anchored);
-    if (wrong.empty()) spec.anchored = anchored;
-    return wrong;
-  };
   row.text = [&spec] { return spec.anchored.value_or(is_anchored(spec.shape)) ? "true" : "false"; };
 }
 
@@ -45,17 +39,17 @@ const Names law_names{"neo_hookean", "mooney_rivlin", "membrane", "red_cell", "r
 const Names membrane_names{"neo_hookean", "skalak"};
 const Names membrane_scheme_names{"grid", "markers"};
 const Names placement_names{"one", "list", "lattice", "random"};
-const Names contact_names{"separate", "merge"};
 
 void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
-  const auto for_shapes = [&](std::size_t count, std::vector<Shape> wanted) {
-    rows.restrict(rows.rows.size() - count, rows.prefix + "shape", spec.shape, shape_names, std::move(wanted));
+  const auto for_shapes = [&](const std::vector<Shape> &wanted) {
+    rows.restrict(rows.prefix + "shape", spec.shape, shape_names, wanted);
   };
   rows.choice("shape", spec.shape, shape_names,
               "shape of the bodies; tube: everything outside a lumen; voxels: from a file; state: as in "
               "-initial_state, and "
               "the default with it; in 2-D the section of the shape at z = 0")
       .required = !from_state;
+  for_shapes({Shape::sphere, Shape::biconcave, Shape::cylinder, Shape::tube, Shape::constricted_tube});
   rows.real("radius", spec.radius, positive, "length", "radius of the body, of a tube that of the lumen").required =
       true;
   Option &diameter = rows.real("diameter", spec.radius, positive, "length", "diameter, instead of the radius");
@@ -66,27 +60,29 @@ void add_shape(Rows &rows, SpeciesSpec &spec, bool from_state) {
     if (wrong.empty()) spec.radius /= 2;
     return wrong;
   };
-  for_shapes(2, {Shape::sphere, Shape::biconcave, Shape::cylinder, Shape::tube, Shape::constricted_tube});
+  for_shapes({Shape::constricted_tube});
   rows.real("throat_radius", spec.throat_radius, positive, "length", "radius of the lumen at its narrowest position")
       .required = true;
   rows.real("throat_length", spec.throat_length, positive, "length",
             "length of the constriction, a cosine around the centre")
       .required = true;
-  for_shapes(2, {Shape::constricted_tube});
+  for_shapes({Shape::ellipsoid});
   rows.real("semi_axes", spec.semi_axes, positive, "length", "semi-axes along x, y, z").required = true;
-  for_shapes(1, {Shape::ellipsoid});
+  for_shapes({Shape::biconcave, Shape::cylinder, Shape::slab, Shape::tube, Shape::constricted_tube});
   rows.choice("axis", spec.axis, {"x", "y", "z"}, "axis of symmetry, or normal of a slab");
-  for_shapes(1, {Shape::biconcave, Shape::cylinder, Shape::slab, Shape::tube, Shape::constricted_tube});
+  for_shapes({Shape::slab});
   rows.real("interval", spec.interval, any_number, "length", "coordinates of the low and the high face of the slab")
       .required = true;
-  for_shapes(1, {Shape::slab});
-  const std::size_t voxels = rows.rows.size();
+  for_shapes({Shape::voxels});
   add_voxel_rows(rows, spec.voxels);
-  for_shapes(rows.rows.size() - voxels, {Shape::voxels});
+  rows.end_limit();
 }
 
 void add_membrane(Rows &rows, SpeciesSpec &spec) {
-  const std::size_t first = rows.rows.size();
+  const auto for_membranes = [&] {
+    rows.restrict(rows.prefix + "law", spec.law, law_names, {Law::membrane, Law::red_cell});
+  };
+  for_membranes();
   rows.choice("membrane_law", spec.membrane.law, membrane_names, "law of a membrane around a fluid");
   rows.choice(
       "membrane_scheme", spec.membrane.scheme, membrane_scheme_names,
@@ -95,9 +91,11 @@ void add_membrane(Rows &rows, SpeciesSpec &spec) {
   rows.real("surface_shear_modulus", spec.membrane.shear_modulus, positive, "force/length",
             "shear modulus G_s of a membrane")
       .required = true;
-  const std::size_t modulus = rows.rows.size();
+  rows.limit("-" + rows.prefix + "membrane_law skalak",
+             [&spec] { return spec.is_membrane() && spec.membrane.law == kernels::MembraneLaw::skalak; });
   rows.real("skalak_c", spec.membrane.area_modulus, not_negative, "",
             "C of Skalak's law: the modulus of area is (1 + 2 C) G_s; that of neo_hookean is 3 G_s");
+  for_membranes();
   rows.real("initial_area_stretch", spec.membrane.initial_area_stretch, positive, "",
             "initial area of a membrane relative to its undeformed area");
   rows.real("bending_modulus", spec.membrane.bending_modulus, not_negative, "energy",
@@ -110,90 +108,68 @@ void add_membrane(Rows &rows, SpeciesSpec &spec) {
   rows.real("stretch_volume_fraction", spec.stretch_force.volume, {0, true, 0.5}, "",
             "share of the volume at each end on which -NAME_stretch_force acts; for a red cell the default is the "
             "outer half um");
-  rows.restrict(first, rows.prefix + "law", spec.law, law_names, {Law::membrane, Law::red_cell});
-  Option &area_modulus = rows.rows[modulus];
-  area_modulus.only_with = "-" + rows.prefix + "membrane_law skalak";
-  area_modulus.applies = [&spec] { return spec.is_membrane() && spec.membrane.law == kernels::MembraneLaw::skalak; };
 }
 
 void add_law(Rows &rows, SpeciesSpec &spec) {
-  const auto for_law = [&](std::size_t count, std::vector<Law> wanted) {
-    rows.restrict(rows.rows.size() - count, rows.prefix + "law", spec.law, law_names, std::move(wanted));
-  };
+  const auto for_law = [&](Law wanted) { rows.restrict(rows.prefix + "law", spec.law, law_names, {wanted}); };
   rows.choice(
       "law", spec.law, law_names,
       "constitutive law; neo_hookean: the deviator of G B; mooney_rivlin: that of 2 c1 B + 2 c2 (tr(B) B - B.B) + "
       "4 c3 (tr B - 3) B; membrane: an elastic membrane around a fluid; red_cell: a membrane with the parameters of a "
       "red blood cell in um, us and mPa s, -NAME_shape biconcave and -NAME_viscosity 6, which their options override");
+  for_law(Law::neo_hookean);
   rows.real("shear_modulus", spec.shear_modulus, not_negative, "pressure",
             "shear modulus G; 0: a fluid, which is tracked")
       .required = true;
-  for_law(1, {Law::neo_hookean});
+  for_law(Law::mooney_rivlin);
   rows.real("c1", spec.c1, not_negative, "pressure", "first coefficient; the shear modulus at rest is 2 (c1 + c2)")
       .required = true;
   rows.real("c2", spec.c2, not_negative, "pressure", "second coefficient");
   rows.real("c3", spec.c3, not_negative, "pressure",
             "third coefficient, which stiffens the body with the square of the strain");
-  for_law(3, {Law::mooney_rivlin});
   add_membrane(rows, spec);
-  const std::size_t first = rows.rows.size();
+  for_law(Law::rigid);
   rows.real("velocity", spec.motion.velocity, any_number, "length/time",
             "velocity V cos(angular_frequency t + phase) of a rigid body, which moves through the grid (a slab along "
             "its axis, as a "
             "piston) or slides along its own surface: tube and cylinder along the axis, slab in its plane");
-  rows.real("velocity_angular_frequency", spec.motion.of_velocity.frequency, not_negative, "rad/time",
-            "angular frequency");
-  rows.real("velocity_phase", spec.motion.of_velocity.phase, any_number, "rad", "phase");
+  rows.oscillation("velocity_", spec.motion.of_velocity.frequency, spec.motion.of_velocity.phase);
   rows.real(
       "angular_velocity", spec.motion.angular_velocity, any_number, "rad/time",
       "angular velocity W cos(angular_frequency t + phase) of a rigid body about its centre; a cylinder: about its "
       "axis");
-  rows.real("angular_velocity_angular_frequency", spec.motion.of_rotation.frequency, not_negative, "rad/time",
-            "angular frequency");
-  rows.real("angular_velocity_phase", spec.motion.of_rotation.phase, any_number, "rad", "phase");
-  for_law(rows.rows.size() - first, {Law::rigid});
+  rows.oscillation("angular_velocity_", spec.motion.of_rotation.frequency, spec.motion.of_rotation.phase);
+  rows.end_limit();
 }
 
-void add_viscosity(Rows &rows, SpeciesSpec &spec) {
-  Option &row = rows.add("viscosity", "mass/length/time", "dynamic viscosity of the bodies");
-  row.accepted = several(1, "number", positive);
-  row.default_note = "that of the fluid";
-  row.read = [&spec](const std::string &value) {
-    double viscosity = 0;
-    std::string wrong = read_reals(value, positive, &viscosity, 1);
-    if (wrong.empty()) spec.viscosity = viscosity;
-    return wrong;
-  };
-  row.text = [&spec] { return spec.viscosity ? to_text(*spec.viscosity) : std::string(); };
-}
-
-void add_surface_tension(Rows &rows, SpeciesSpec &spec) {
+void add_surface_and_forces(Rows &rows, SpeciesSpec &spec) {
+  rows.optional(spec.viscosity,
+                [&](double &viscosity) -> Option & {
+                  return rows.real("viscosity", viscosity, positive, "mass/length/time",
+                                   "dynamic viscosity of the bodies");
+                })
+      .default_note = "that of the fluid";
   rows.real("surface_tension", spec.surface_tension, not_negative, "force/length",
             "surface tension; a drop is a body with -NAME_shear_modulus 0");
-}
-
-void add_body_force(Rows &rows, SpeciesSpec &spec) {
   rows.real("body_force", spec.body_force.force, any_number, "length/time^2",
             "force per mass F cos(angular_frequency t + phase) on the bodies of this species only");
-  rows.real("body_force_angular_frequency", spec.body_force.frequency, not_negative, "rad/time", "angular frequency");
-  rows.real("body_force_phase", spec.body_force.phase, any_number, "rad", "phase");
+  rows.oscillation("body_force_", spec.body_force.frequency, spec.body_force.phase);
+  rows.real(
+      "initial_stretch", spec.initial_stretch, positive, "",
+      "initial principal stretches l along the axes of the body, which -NAME_orientation rotates: B = R diag(l^2) R^T, "
+      "for a membrane the part along its surface; the given shape is the stretched one");
 }
 
 void add_contact(Rows &rows, SpeciesSpec &spec) {
-  Option &row = rows.add("contact", "",
-                         "whether bodies of this species that touch stay separate, each in a box of cells of its own, "
-                         "or merge as drops do");
-  row.accepted = "one of separate, merge";
-  row.default_note =
+  rows.optional(spec.contact,
+                [&](Contact &contact) -> Option & {
+                  return rows.choice("contact", contact, {"separate", "merge"},
+                                     "whether bodies of this species that touch stay separate, each in a box of cells "
+                                     "of its own, or merge as drops do");
+                })
+      .default_note =
       "separate; merge where bodies have no boxes: with -interface_scheme weno5, cylinders, bodies anchored to walls, "
       "-body_series false";
-  row.read = [&spec](const std::string &value) {
-    int index = 0;
-    std::string wrong = read_choice(value, contact_names, &index);
-    if (wrong.empty()) spec.contact = static_cast<Contact>(index);
-    return wrong;
-  };
-  row.text = [&spec] { return spec.contact ? contact_names[static_cast<int>(*spec.contact)] : std::string(); };
 }
 
 // 3 integers for a lattice, 1 for bodies at random: read before it is known which.
@@ -204,54 +180,53 @@ void add_count(Rows &rows, SpeciesSpec &spec) {
   count.read = [&spec](const std::string &value) {
     spec.count = {1, 1, 1};  // of a file that is overruled
     spec.number = -1;
-    if (value.find(',') == std::string::npos) return read_integer(value, {0, false}, &spec.number);
-    return read_integers(value, at_least_one, spec.count.data(), 3);
+    if (value.find(',') == std::string::npos) return read_numbers(value, {0, false}, &spec.number, 1);
+    return read_numbers(value, at_least_one, spec.count.data(), 3);
   };
   count.text = [&spec] {
     if (spec.placement == Placement::random) return spec.number < 0 ? std::string() : std::to_string(spec.number);
-    return list(spec.count.data(), 3, [](int n) { return std::to_string(n); });
+    return list(spec.count.data(), 3);
   };
 }
 
 void add_orientation(Rows &rows, SpeciesSpec &spec) {
+  rows.restrict(rows.prefix + "shape", spec.shape, shape_names, {Shape::sphere, Shape::biconcave, Shape::ellipsoid});
   Option &orientation = rows.add("orientation", "degrees", "rotations about x, then y, then z, or random");
   orientation.accepted = "random, or 3 numbers, separated by commas";
   orientation.read = [&spec](const std::string &value) {
     spec.random_orientation = value == "random";
     spec.orientation = {};
-    return spec.random_orientation ? std::string() : read_reals(value, any_number, spec.orientation.data(), 3);
+    return spec.random_orientation ? std::string() : read_numbers(value, any_number, spec.orientation.data(), 3);
   };
-  orientation.text = [&spec] { return spec.random_orientation ? "random" : list(spec.orientation.data(), 3, to_text); };
-  rows.restrict(rows.rows.size() - 1, rows.prefix + "shape", spec.shape, shape_names,
-                {Shape::sphere, Shape::biconcave, Shape::ellipsoid});
+  orientation.text = [&spec] { return spec.random_orientation ? "random" : list(spec.orientation.data(), 3); };
+  rows.end_limit();
 }
 
 void add_placement(Rows &rows, SpeciesSpec &spec) {
-  const auto for_placement = [&](std::size_t count, std::vector<Placement> wanted) {
-    rows.restrict(rows.rows.size() - count, rows.prefix + "placement", spec.placement, placement_names,
-                  std::move(wanted));
+  const auto for_placement = [&](const std::vector<Placement> &wanted) {
+    rows.restrict(rows.prefix + "placement", spec.placement, placement_names, wanted);
   };
   rows.choice("placement", spec.placement, placement_names,
               "one body, a list of bodies, a lattice that fills the box, or random without overlap");
-  Option &centre = rows.real(
-      "centre", spec.centre, any_number, "length",
-      "centre of the body, of the lumen or of its constriction; for rigid voxels the centre of rotation and torque");
-  centre.default_note = "centre of the box";
-  centre.only_with = "-" + rows.prefix + "placement one and a shape other than slab, state and soft voxels";
-  centre.applies = [&spec] {
+  rows.limit("-" + rows.prefix + "placement one and a shape other than slab, state and soft voxels", [&spec] {
     const bool placed = spec.shape != Shape::slab && spec.shape < Shape::voxels;
     return spec.placement == Placement::one && (placed || (spec.shape == Shape::voxels && spec.law == Law::rigid));
-  };
+  });
+  rows.real("centre", spec.centre, any_number, "length",
+            "centre of the body, of the lumen or of its constriction; for rigid voxels the centre of rotation and "
+            "torque")
+      .default_note = "centre of the box";
+  for_placement({Placement::list});
   Option &positions = rows.path("positions", spec.positions_file,
                                 "file with rows of x,y,z, or of x,y,z and angles in degrees (docs/howto/numbers.md)");
   positions.required = true;
   positions.names_file = any_file;
-  for_placement(1, {Placement::list});
+  for_placement({Placement::lattice, Placement::random});
   add_count(rows, spec);
-  for_placement(1, {Placement::lattice, Placement::random});
+  for_placement({Placement::lattice});
   rows.real("jitter", spec.jitter, {0, false, 1}, "",
             "random displacement, relative to the free distance between bodies of the lattice");
-  for_placement(1, {Placement::lattice});
+  for_placement({Placement::random});
   Option &hematocrit = rows.real("hematocrit", spec.hematocrit, {0, false, 1}, "",
                                  "volume of the bodies relative to that of the tube, or of the box less slabs and "
                                  "bodies from files; instead of the count");
@@ -265,12 +240,12 @@ void add_placement(Rows &rows, SpeciesSpec &spec) {
   rows.real("gap", spec.gap, not_negative, "length",
             "least initial distance between bodies, and half of it to walls; membranes: at least a cell to walls")
       .default_note = "0; for membranes the spacing of the grid";
-  for_placement(3, {Placement::random});
   add_orientation(rows, spec);
-  Option &seed = rows.integer("seed", spec.seed, {0, false}, "seed of the random numbers");
-  seed.only_with =
-      "-" + rows.prefix + "placement random, -" + rows.prefix + "orientation random or -" + rows.prefix + "jitter";
-  seed.applies = [&spec] { return spec.placement == Placement::random || spec.random_orientation || spec.jitter > 0; };
+  rows.limit(
+      "-" + rows.prefix + "placement random, -" + rows.prefix + "orientation random or -" + rows.prefix + "jitter",
+      [&spec] { return spec.placement == Placement::random || spec.random_orientation || spec.jitter > 0; });
+  rows.integer("seed", spec.seed, {0, false}, "seed of the random numbers");
+  rows.end_limit();
 }
 
 }  // namespace
@@ -279,23 +254,17 @@ void add_species_rows(Rows &rows, SpeciesSpec &spec, bool from_state) {
   rows.prefix = spec.name + "_";
   add_shape(rows, spec, from_state);
   add_law(rows, spec);
-  const std::vector<Law> not_rigid{Law::neo_hookean, Law::mooney_rivlin, Law::membrane, Law::red_cell};
-  const auto for_all_but_rigid = [&](std::size_t first) {
-    rows.restrict(first, rows.prefix + "law", spec.law, law_names, not_rigid);
+  const auto for_all_but_rigid = [&] {
+    rows.restrict(rows.prefix + "law", spec.law, law_names,
+                  {Law::neo_hookean, Law::mooney_rivlin, Law::membrane, Law::red_cell});
   };
-  std::size_t first = rows.rows.size();
-  add_viscosity(rows, spec);
-  add_surface_tension(rows, spec);
-  add_body_force(rows, spec);
-  rows.real(
-      "initial_stretch", spec.initial_stretch, positive, "",
-      "initial principal stretches l along the axes of the body, which -NAME_orientation rotates: B = R diag(l^2) R^T, "
-      "for a membrane the part along its surface; the given shape is the stretched one");
-  for_all_but_rigid(first);
+  for_all_but_rigid();
+  add_surface_and_forces(rows, spec);
+  rows.end_limit();
   add_anchored_row(rows, spec);
-  first = rows.rows.size();
+  for_all_but_rigid();
   add_contact(rows, spec);
-  for_all_but_rigid(first);
+  rows.end_limit();
   add_placement(rows, spec);
   rows.prefix.clear();
 }

@@ -10,56 +10,39 @@
 
 namespace eulastic {
 
-// Of all bodies, those of other ranks too.
-PetscErrorCode Outputs::measure_drift(Measured *measured) {
+// Drifts of volume and strains, the largest of all bodies, those of other ranks too.
+PetscErrorCode Outputs::measure_largest(Measured *measured) {
   Measured &m = *measured;
-  struct {
-    double drift = 0;
-    int label = 0;
-  } resolved_one;  // MPI_DOUBLE_INT; of equal ones the first
-  PetscFunctionBeginUser;
-  m.volume_drift = 0;
-  const std::vector<double> &first_volumes = solver_->bodies().first_volumes();
-  for (std::size_t b = 0; b < m.bodies.size(); ++b) {
-    const BodyMeasure &body = m.bodies[b];
-    const double first = first_volumes[b];
-    const double drift = first > 0 && !body.leaves ? std::fabs(body.volume / first - 1) : 0;
-    m.volume_drift = std::max(m.volume_drift, drift);
-    if (resolved(first) && (drift > resolved_one.drift || resolved_one.label == 0)) resolved_one = {drift, body.label};
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m.volume_drift, 1, MPI_DOUBLE, MPI_MAX, domain_->comm()));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &resolved_one, 1, MPI_DOUBLE_INT, MPI_MAXLOC, domain_->comm()));
-  m.resolved_drift = resolved_one.drift;
-  m.drifting_body = resolved_one.label;
-  Real3 place{};
-  for (const BodyMeasure &body : m.bodies)
-    if (body.label == m.drifting_body) place = body.centroid;
-  PetscCallMPI(MPI_Allreduce(place.data(), m.drifting_place.data(), 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
-  PetscFunctionReturn(0);
-}
-
-// The largest strains of all bodies, those of other ranks too.
-PetscErrorCode Outputs::measure_strains(Measured *measured) {
-  Measured &m = *measured;
-  Largest largest[2];  // stretch; area of a red cell. MPI_DOUBLE_INT; of equal ones the first
+  Largest largest[3];  // drift of a resolved body; stretch; area of a red cell. MPI_DOUBLE_INT; of equal ones the first
   const auto see = [](double value, int label, Largest *of) {
     if (of->label == 0 || value > of->value) *of = {value, label};
   };
   PetscFunctionBeginUser;
   if (solver_->bodies().bodies() == 0) PetscFunctionReturn(0);
+  m.volume_drift = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {
     const BodyMeasure &body = m.bodies[b];
-    const SpeciesSpec &spec = config_.species[body.species];
-    see(largest_stretch(m.bodies, m.surfaces, b), body.label, &largest[0]);
-    if (spec.law == Law::red_cell && b < m.surfaces.size()) see(m.surfaces[b].area_strain, body.label, &largest[1]);
+    const double first = solver_->bodies().first_volumes()[b];
+    const double drift = first > 0 && !body.leaves ? std::fabs(body.volume / first - 1) : 0;
+    m.volume_drift = std::max(m.volume_drift, drift);
+    if (resolved(first)) see(drift, body.label, &largest[0]);
+    see(largest_stretch(m.bodies, m.surfaces, b), body.label, &largest[1]);
+    if (config_.species[body.species].law == Law::red_cell && b < m.surfaces.size())
+      see(m.surfaces[b].area_strain, body.label, &largest[2]);
   }
   for (Largest &l : largest)
     if (l.label == 0) l = {-HUGE_VAL, INT_MAX};
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE_INT, MPI_MAXLOC, domain_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m.volume_drift, 1, MPI_DOUBLE, MPI_MAX, domain_->comm()));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 3, MPI_DOUBLE_INT, MPI_MAXLOC, domain_->comm()));
   for (Largest &l : largest)
     if (l.label == INT_MAX) l = {};
-  m.stretch = largest[0];
-  m.red_cell_area = largest[1];
+  m.resolved_drift = largest[0];
+  m.stretch = largest[1];
+  m.red_cell_area = largest[2];
+  Real3 place{};
+  for (const BodyMeasure &body : m.bodies)
+    if (body.label == m.resolved_drift.label) place = body.centroid;
+  PetscCallMPI(MPI_Allreduce(place.data(), m.drifting_place.data(), 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
   PetscFunctionReturn(0);
 }
 
@@ -117,17 +100,12 @@ std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::ve
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyMeasure &body = bodies[b];
     if (b > 0 && config_.species[bodies[b - 1].species].bears_load()) pass(config_.species[bodies[b - 1].species]);
-    BodyRecord record;
-    record.id = body.label;
-    record.species = config_.species[body.species].name;
-    record.centroid = body.centroid;
-    record.velocity = body.velocity;
-    record.volume = body.volume;
-    record.taylor_deformation = body.taylor_deformation;
-    record.inclination = body.inclination;
-    record.elastic_energy = body.elastic_energy;
+    BodyRecord &record = records.emplace_back();
+    record.body = body;
     record.largest_stretch = largest_stretch(bodies, surfaces, b);
-    record.rest_deformation = body.rest_deformation;
+    if (b < surfaces.size()) record.surface = surfaces[b];
+    if (b < measured.body_bonds.size() && measured.body_bonds[b].body == body.label)
+      record.bonds = measured.body_bonds[b];
     if (config_.species[body.species].law == Law::rigid && rigid < measured.loads.size()) {
       record.force = measured.loads[rigid].force;
       record.torque = measured.loads[rigid].torque;
@@ -135,36 +113,24 @@ std::vector<BodyRecord> Outputs::records(const Measured &measured, const std::ve
       record.force = measured.surface_loads[elastic].force;
       record.torque = measured.surface_loads[elastic].torque;
     }
-    if (b < measured.body_bonds.size() && measured.body_bonds[b].body == body.label) {
-      const BodyBonds &bonds = measured.body_bonds[b];
-      record.bonds = bonds.bonds;
-      record.bond_force = bonds.force;
-      record.bond_tension = bonds.tension;
-      record.bond_age = bonds.age;
-    }
-    if (b < surfaces.size()) {
-      const SurfaceMeasure &surface = surfaces[b];
-      record.surface_area = surface.area;
-      record.shear_energy = surface.shear_energy;
-      record.area_energy = surface.area_energy;
-      record.bending_energy = surface.bending_energy;
-      record.turning_rate = surface.turning_rate;
-    }
-    records.push_back(record);
   }
   return records;
 }
 
 // The first of all bodies, on rank 0.
-PetscErrorCode Outputs::list_bodies(Summary *summary) const {
+PetscErrorCode Outputs::list_bodies(std::vector<Json> *list) const {
   std::vector<BodyMeasure> bodies;
   std::vector<SurfaceMeasure> surfaces;
   PetscFunctionBeginUser;
   const MPI_Comm comm = domain_->comm();
   const int all = solver_->bodies().bodies();
-  PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.bodies, &bodies));
-  if (membranes_) PetscCall(gather_bodies(comm, all, Summary::most_bodies, now_.measured.surfaces, &surfaces));
-  summary->bodies = records(now_.measured, bodies, surfaces);
+  PetscCall(gather_bodies(comm, all, most_bodies, now_.bodies, &bodies));
+  if (membranes_) PetscCall(gather_bodies(comm, all, most_bodies, now_.surfaces, &surfaces));
+  for (const BodyRecord &record : records(now_, bodies, surfaces)) {
+    Json &json = list->emplace_back();
+    json.add("id", static_cast<long>(record.body.label)).add("species", config_.species[record.body.species].name);
+    for_numbers(record, true, true, false, [&](const char *name, const auto &value) { json.add(name, value); });
+  }
   PetscFunctionReturn(0);
 }
 

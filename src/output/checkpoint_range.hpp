@@ -11,16 +11,24 @@
 
 namespace eulastic {
 
-/// All of these return nothing, or an error about a number out of range, "time: -1; accepted: ...".
+/// The values that a number may have.
+struct Accepted {
+  double low, high;
+  std::string words;
+  bool whole = false;  ///< whether it must be a whole number
+};
+
+/// Counts of steps, rows and the like, which doubles still hold exactly.
+extern const Accepted any_count;
+
+/// All of these return nothing, or an error about a number out of range, "time holds -1; accepted: ...".
+/// `values`: records of accepted.size() numbers each.
+std::string find_invalid(const std::string &name, const std::vector<double> &values,
+                         const std::vector<Accepted> &accepted);
+std::string find_invalid(const std::string &name, const std::vector<long> &values, const Accepted &accepted);
 std::string find_invalid_number(const CheckpointNumbers &numbers);
-std::string find_invalid_count(const std::string &name, const std::vector<long> &values);
-std::string find_invalid_count(const std::string &name, const std::vector<double> &values);
 /// `like`: of every body that has come in, the label of an earlier one; `placed`: bodies of the scene.
 std::string find_invalid_link(const std::vector<long> &like, int placed);
-/// Of one rank's share of the bodies: their cells, their first volumes, and their generators (0 = none) of
-/// `generators`.
-std::string find_invalid_body(const std::vector<long> &cells, const std::vector<double> &first_volumes);
-std::string find_invalid_generator(const std::vector<long> &inside, int generators);
 /// Markers of membranes in a block of cells, packed as by SurfaceMarker::packed().
 std::string find_invalid_marker(const std::vector<double> &packed, const Extent &block, int bodies, int phases);
 /// Receptors on bodies of a scene with so many pairs that adhere, packed as by Receptor::packed().

@@ -19,6 +19,14 @@ std::string where(const State &state, const Real3 &place) {
 // NaN is beyond every limit.
 bool beyond(double value, double limit) { return limit > 0 && !(value <= limit); }
 
+// Centre of the cell with this index, counted along x, then y, then z.
+Real3 place_of_cell(const Box &box, double index) {
+  const Int3 &n = box.domain_cells();
+  const Real3 &h = box.spacing();
+  const double i = std::fmod(index, n[0]), j = std::fmod(std::floor(index / n[0]), n[1]);
+  return {(i + 0.5) * h[0], (j + 0.5) * h[1], (std::floor(index / n[0] / n[1]) + 0.5) * h[2]};
+}
+
 // For extremes that met such a value.
 Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
   const State &state = solver.state();
@@ -98,11 +106,11 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
         "Mach number |v|/beta = %.3g of artificial compressibility is above -guard_mach %g; lower -time_step "
         "(%.3g now) or raise -acm_iterations_max",
         m.mach, control_.mach, state.dt);
-  } else if (beyond(m.resolved_drift, control_.volume_drift)) {
+  } else if (beyond(m.resolved_drift.value, control_.volume_drift)) {
     what = print(
         "the volume of body %d has changed by %.3g of its own, above -guard_volume_drift %g; more "
         "-grid_cells, -interface_scheme plic, or %s (%.3g now)",
-        m.drifting_body, m.resolved_drift, control_.volume_drift, pressure_advice_.c_str(), state.dt);
+        m.resolved_drift.label, m.resolved_drift.value, control_.volume_drift, pressure_advice_.c_str(), state.dt);
     find = nullptr;
     place = m.drifting_place;
   }
@@ -168,13 +176,6 @@ PetscErrorCode place_of_divergence(const Domain &domain, const Field &velocity, 
   };
   PetscCall(largest(domain, divergence, place));
   PetscFunctionReturn(0);
-}
-
-Real3 place_of_cell(const Box &box, double index) {
-  const Int3 &n = box.domain_cells();
-  const Real3 &h = box.spacing();
-  const double i = std::fmod(index, n[0]), j = std::fmod(std::floor(index / n[0]), n[1]);
-  return {(i + 0.5) * h[0], (j + 0.5) * h[1], (std::floor(index / n[0] / n[1]) + 0.5) * h[2]};
 }
 
 }  // namespace eulastic

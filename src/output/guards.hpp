@@ -4,15 +4,10 @@
 // of a violation is searched only if the run stops.
 #pragma once
 
-#include "adhesion/bond_records.hpp"
 #include "base/petsc.hpp"
-#include "bodies/measures.hpp"
-#include "diagnostics/flow_measures.hpp"
-#include "diagnostics/surface_loads.hpp"
 #include "field/field.hpp"
 #include "grid/domain.hpp"
-#include "membranes/surface_measures.hpp"
-#include "rigid/rigid_surfaces.hpp"
+#include "output/measured.hpp"
 #include "scene/config.hpp"
 #include "solver/solver.hpp"
 
@@ -23,33 +18,6 @@ struct Stop {
   std::string reason;   ///< exit_reason of summary.json: nonfinite or guard
   std::string message;  ///< one line: step, time, position, violated limit, remedy
   explicit operator bool() const { return !reason.empty(); }
-};
-
-/// The largest value of all bodies, and the label of the body that has it; 0 if there is none.
-struct Largest {
-  double value = 0;
-  int label = 0;
-};
-
-/// A state as measured for series.csv.
-struct Measured {
-  double time = -1;  ///< of the state; negative: not yet
-  FlowMeasures flow;
-  SurfaceEnergy surface;
-  std::vector<RigidLoad> loads;            ///< of the rigid ones among the bodies
-  std::vector<SurfaceLoad> surface_loads;  ///< of the others that bear loads
-  std::vector<BodyMeasure> bodies;         ///< that this rank owns
-  std::vector<SurfaceMeasure> surfaces;    ///< of the same bodies; empty without membranes
-  BondTotals bonds;                        ///< of the middle of the last step
-  std::vector<BodyBonds> body_bonds;       ///< of the bodies that this rank owns; empty without adhesion
-  double volume_drift = 0;                 ///< largest of all bodies
-  double resolved_drift = 0;               ///< largest of the bodies of at least a few cells at the start
-  int drifting_body = 0;                   ///< its label
-  Real3 drifting_place{};
-  double energy_made = 0;  ///< EnergyBudget::generated_share()
-  Largest stretch;         ///< of all bodies
-  Largest red_cell_area;   ///< of red cells: growth of the area since rest
-  double mach = 0;         ///< largest speed over the sound speed of artificial compressibility; 0 = there is none
 };
 
 class Guards {
@@ -72,7 +40,5 @@ private:
 PetscErrorCode place_of_speed(const Domain &domain, const Field &velocity, Real3 *place);
 /// Centre of the cell with the largest |div v|; the first one if there are several. Reads one ghost layer. Collective.
 PetscErrorCode place_of_divergence(const Domain &domain, const Field &velocity, Real3 *place);
-/// Centre of the cell with this index, counted along x, then y, then z.
-Real3 place_of_cell(const Box &box, double index);
 
 }  // namespace eulastic

@@ -2,7 +2,10 @@
 
 #include "base/events.hpp"
 #include "boxes/boxed_bodies.hpp"
+#include "io/checksum.hpp"
+#include "io/text_file.hpp"
 #include "output/saved_state.hpp"
+#include "output/snapshot_output.hpp"
 #include "output/verdict.hpp"
 #include "solver/synchronised_state.hpp"
 
@@ -22,8 +25,11 @@ void Outputs::start(const Config &config, const Domain &domain, Solver *solver, 
   probes_time_ = waits ? now : position.series_time;
   membranes_ = std::any_of(config.species.begin(), config.species.end(),
                            [](const SpeciesSpec &spec) { return spec.is_membrane(); });
-  energy_ = position.energy;
-  energy_.allow_energy_return(config.method.pressure == PressureKind::acm && config.method.is_single_acm_step());
+  loads_ = std::any_of(config.species.begin(), config.species.end(),
+                       [](const SpeciesSpec &spec) { return spec.bears_load(); });
+  position_ = position;
+  position_.energy.allow_energy_return(config.method.pressure == PressureKind::acm &&
+                                       config.method.is_single_acm_step());
   const double apart = std::max(config.output.series_interval, config.time.step);
   energy_unknown_.clear();
   if (4 * apart > solver->limits({}).forcing)
@@ -31,33 +37,32 @@ void Outputs::start(const Config &config, const Domain &domain, Solver *solver, 
         "rows of series.csv are too far apart to resolve the oscillation; use a -series_interval of a quarter period";
   else if (has_inlet_generators(config.sides) && !config.species.empty())
     energy_unknown_ = "bodies that enter through a boundary carry energy that is not counted";
-  mach_max_ = position.mach_max;
 }
 
-PetscErrorCode Outputs::open(const std::string &directory, const OutputsPosition &position, bool same_directory) {
+PetscErrorCode Outputs::open(const std::string &directory, bool same_directory) {
   PetscFunctionBeginUser;
   const MPI_Comm comm = domain_->comm();
   directory_ = directory;
-  Row row;
+  Measured row;
   row.sides = crossed_boundaries(config_.sides, *domain_);
   std::vector<std::string> columns;
   for (const auto &[name, value] : series_row(row)) columns.push_back(name);
-  PetscCall(series_.open(comm, directory + "/series.csv", columns, same_directory ? position.series_rows : 0));
-  PetscCall(samples_.open(config_.samples, *domain_, directory, probes_time_, position.profile_time));
+  PetscCall(series_.open(comm, directory + "/series.csv", columns, same_directory ? position_.series_rows : 0));
+  PetscCall(samples_.open(config_.samples, *domain_, directory, probes_time_, position_.profile_time));
   if (solver_->bodies().bodies() > 0) {
-    const bool loads = std::any_of(config_.species.begin(), config_.species.end(),
-                                   [](const SpeciesSpec &spec) { return spec.bears_load(); });
-    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5",
-                                                BodiesColumns{membranes_, loads, solver_->part<Adhesion>() != nullptr});
-    bodies_rows_ = same_directory ? position.bodies_rows : 0;
-    if (same_directory) PetscCall(bodies_file_->resume(&bodies_rows_));
+    std::vector<BodyColumn> of_bodies;
+    for_numbers({}, membranes_, loads_, solver_->part<Adhesion>() != nullptr, [&](const char *name, const auto &value) {
+      of_bodies.push_back({name, static_cast<int>(sizeof value / sizeof(double))});
+    });
+    bodies_file_ = std::make_unique<BodiesFile>(comm, directory + "/bodies.h5", of_bodies);
+    if (!same_directory) position_.bodies_rows = 0;
+    if (same_directory) PetscCall(bodies_file_->resume(&position_.bodies_rows));
   }
   if (solver_->part<Adhesion>())
-    PetscCall(bond_files_.open(comm, directory, same_directory ? position.bonds : BondFiles::Position{}));
-  snapshots_before_ = position.snapshots;
+    PetscCall(bond_files_.open(comm, directory, same_directory ? position_.bonds : BondFiles::Position{}));
   if (snapshot_due_.interval > 0) {
-    snapshots_ = std::make_unique<SnapshotOutput>(*domain_, directory, config_.output.snapshot_vti);
-    PetscCall(snapshots_->resume(static_cast<int>(position.snapshots), same_directory));
+    snapshots_ = std::make_unique<SnapshotWriter>(*domain_, directory, config_.output.snapshot_vti);
+    PetscCall(snapshots_->resume(static_cast<int>(position_.snapshots), same_directory));
   }
   PetscFunctionReturn(0);
 }
@@ -73,7 +78,7 @@ void Outputs::moved_to(const std::string &directory) {
 
 PetscErrorCode Outputs::measure() {
   PetscFunctionBeginUser;
-  Measured &m = now_.measured;
+  Measured &m = now_;
   if (m.time == solver_->state().time) PetscFunctionReturn(0);
   PetscCall(look(&now_));
   if (solver_->bodies().first_volumes().empty()) {
@@ -81,18 +86,17 @@ PetscErrorCode Outputs::measure() {
     for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);
     solver_->bodies().set_first_volumes(std::move(volumes));
   }
-  PetscCall(measure_drift(&m));
-  PetscCall(measure_strains(&m));
+  PetscCall(measure_largest(&m));
   if (solver_->state().step > 0)
-    mach_max_ = std::max(mach_max_, m.mach);  // where the flow starts div v may be anything
+    position_.mach_max = std::max(position_.mach_max, m.mach);  // where the flow starts div v may be anything
   m.energy_made = energy_unknown_.empty() ? budget_now().generated_share() : 0;
   PetscFunctionReturn(0);
 }
 
 // Only rows of series.csv advance the budget of the run.
 EnergyBudget Outputs::budget_now() const {
-  EnergyBudget budget = energy_;
-  budget.advance(now_.measured.time, now_.energy);
+  EnergyBudget budget = position_.energy;
+  budget.advance(now_.time, now_.energy);
   return budget;
 }
 
@@ -101,7 +105,8 @@ PetscErrorCode Outputs::write_passed_snapshots(const std::vector<double> &times)
   if (times.empty()) PetscFunctionReturn(0);
   StageScope stage(Stage::output);
   EventScope scope(Event::write);
-  PetscCall(solver_->synchronised().replay_last_step(times, [this] { return snapshots_->write(config_, solver_); }));
+  PetscCall(solver_->synchronised().replay_last_step(
+      times, [this] { return write_snapshot(config_, solver_, snapshots_.get()); }));
   snapshot_due_.last_time = times.back();
   PetscFunctionReturn(0);
 }
@@ -142,7 +147,7 @@ PetscErrorCode Outputs::write_due(bool last) {
   } else if (series) {
     PetscCall(await_row(series_time_before));
   }
-  if (snapshot) PetscCall(snapshots_->write(config_, solver_));
+  if (snapshot) PetscCall(write_snapshot(config_, solver_, snapshots_.get()));
   PetscFunctionReturn(0);
 }
 
@@ -151,84 +156,105 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   PetscCall(series_.sync());
   PetscCall(samples_.sync());
   if (bodies_file_) PetscCall(bodies_file_->flush());
-  if (solver_->part<Adhesion>()) PetscCall(bond_files_.sync(&position->bonds));
-  position->series_rows = series_.rows();
-  position->bodies_rows = bodies_rows_;
-  position->snapshots = snapshots_ ? snapshots_->count() : snapshots_before_;
-  position->series_time = waits_ ? series_time_before_ : series_due_.last_time;
-  position->snapshot_time = snapshot_due_.last_time;
-  position->profile_time = samples_.profile_time();
-  position->energy = energy_;
-  position->mach_max = mach_max_;
+  if (solver_->part<Adhesion>()) PetscCall(bond_files_.sync(&position_.bonds));
+  position_.series_rows = series_.rows();
+  if (snapshots_) position_.snapshots = snapshots_->count();
+  position_.series_time = waits_ ? series_time_before_ : series_due_.last_time;
+  position_.snapshot_time = snapshot_due_.last_time;
+  position_.profile_time = samples_.profile_time();
+  *position = position_;
   PetscFunctionReturn(0);
 }
 
-// What the last row has of the flow and of its energy.
-void Outputs::add_measures(const EnergyBudget &budget, Summary *summary) const {
-  const Measured &measured = now_.measured;
-  summary->divergence_rms = measured.flow.divergence_rms;
-  summary->divergence_max = measured.flow.divergence_max;
-  summary->mach_max = mach_max_;
-  summary->volume_drift = measured.volume_drift;
-  summary->kinetic_energy = measured.flow.kinetic_energy;
-  summary->elastic_energy = measured.flow.elastic_energy;
-  const EnergyState &energy = now_.energy;
-  summary->viscous_dissipation = energy.dissipation;
-  summary->force_power = energy.rates.force_power;
-  summary->wall_power = energy.rates.wall_power;
-  summary->side_power = energy.rates.side_power;
-  for (const SideFlow &side : now_.sides) summary->sides.push_back({side.name(), side.flow_rate, side.pressure});
-  summary->elastic_power = energy.rates.elastic_power;
-  summary->energy_supplied = budget.supplied();
-  summary->energy_dissipated = budget.dissipated();
-  summary->energy_lost = budget.lost();
-  summary->energy_lost_elastic = budget.lost_elastic();
-  summary->energy_lost_extended = budget.lost_extended();
-  summary->energy_made_share = budget.generated_share_max();
-  summary->surface_energy = energy.surface;
-  summary->surface_power = energy.surface_power;
-  summary->bulk_velocity = measured.flow.bulk_velocity[0];
+// What the time loop knows of the run, and how fast it was.
+void Outputs::add_progress(const RunSummary &run, const Totals &totals, Json *json) const {
+  const State &state = solver_->state();
+  const double cells = domain_->domain_cell_count(), steps = double(state.step), updates = cells * steps;
+  const double sweeps = state.step > 0 ? double(solver_->sweeps()) / steps : 0;
+  const bool ksp = config_.method.pressure == PressureKind::ksp;
+  json->add("version", std::string(EULASTIC_VERSION))
+      .add("method", std::string(config_.method.kind == MethodKind::classic ? "classic" : "fast"))
+      .add("pressure_solver", std::string(std::array{"acm", "smac", "ksp"}[static_cast<int>(config_.method.pressure)]))
+      .add("exit_reason", run.exit_reason)
+      .add("checkpoint", run.checkpoint)
+      .add("cells", static_cast<long>(cells))
+      .add("ranks", static_cast<long>(domain_->ranks()))
+      .add("threads", static_cast<long>(config_.threads))
+      .add("steps", static_cast<long>(state.step))
+      .add("time", state.time)
+      .add("dt_mean", state.step > 0 ? state.time / steps : 0)
+      .add("wall_seconds", run.wall_seconds)
+      .add("wall_seconds_total", run.wall_seconds_total)
+      .add("cell_updates_per_second", updates / run.wall_seconds)
+      .add("ns_per_cell_step", 1e9 * run.wall_seconds / updates)
+      .add("bytes_per_cell", totals.bytes / cells)
+      .add("active_fraction", totals.evolving / cells)
+      .add("acm_sweeps_per_step", ksp ? 0 : sweeps)
+      .add("ksp_iterations_per_step", ksp ? sweeps : 0)
+      .add("viscous_stages_per_step", state.step > 0 ? double(solver_->stages()) / steps : 0)
+      .add("strain_forgotten", static_cast<long>(state.forgotten));
 }
 
-PetscErrorCode Outputs::write_summary(Summary summary) {
+// What the last row has of the flow and of its energy.
+void Outputs::add_measures(const EnergyBudget &budget, Json *json) const {
+  const FlowMeasures &flow = now_.flow;
+  const EnergyState &energy = now_.energy;
+  json->add("divergence_rms", flow.divergence_rms)
+      .add("divergence_max", flow.divergence_max)
+      .add("mach_max", position_.mach_max)
+      .add("volume_drift", now_.volume_drift)
+      .add("kinetic_energy", flow.kinetic_energy)
+      .add("elastic_energy", flow.elastic_energy)
+      .add("viscous_dissipation", energy.dissipation)
+      .add("force_power", energy.rates.force_power)
+      .add("wall_power", energy.rates.wall_power)
+      .add("elastic_power", energy.rates.elastic_power)
+      .add("energy_supplied", budget.supplied())
+      .add("energy_dissipated", budget.dissipated())
+      .add("energy_lost", budget.lost())
+      .add("energy_lost_elastic", budget.lost_elastic())
+      .add("energy_lost_extended", budget.lost_extended())
+      .add("energy_made_share", budget.generated_share_max())
+      .add("surface_energy", energy.surface)
+      .add("surface_power", energy.surface_power)
+      .add("side_power", energy.rates.side_power);
+}
+
+PetscErrorCode Outputs::write_summary(const RunSummary &run) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::output);
   const State &state = solver_->state();
   PetscCall(measure());
   // A failed write is not repeated: after a failed fsync the system drops the data.
-  if (bodies_file_ && summary.exit_reason != "output_failed") PetscCall(bodies_file_->flush());
-  summary.method = config_.method.kind == MethodKind::classic ? "classic" : "fast";
-  summary.pressure_solver = std::array{"acm", "smac", "ksp"}[static_cast<int>(config_.method.pressure)];
-  summary.cells = static_cast<long>(domain_->domain_cell_count());
-  summary.ranks = domain_->ranks();
-  summary.threads = config_.threads;
-  summary.steps = static_cast<long>(state.step);
-  summary.time = state.time;
-  summary.dt_mean = state.step > 0 ? state.time / double(state.step) : 0;
-  if (state.step > 0) {
-    summary.viscous_stages_per_step = double(solver_->stages()) / double(state.step);
-    const double sweeps = double(solver_->sweeps()) / double(state.step);
-    (config_.method.pressure == PressureKind::ksp ? summary.ksp_iterations_per_step : summary.acm_sweeps_per_step) =
-        sweeps;
-  }
-  summary.strain_forgotten = static_cast<long>(state.forgotten);
+  if (bodies_file_ && run.exit_reason != "output_failed") PetscCall(bodies_file_->flush());
+  Totals totals{double(solver_->bytes()), 0, double(state.markers.size())};
+  for (const Phase &phase : state.phases) totals.evolving += phase.tensor.evolving.points();
+  for (const BodyInBox &body : solver_->boxed().list()) totals.evolving += body.phase->tensor.evolving.points();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &totals, 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
+  std::uint64_t hash = 0;
+  std::vector<Json> files, sides, verdicts, bodies;
+  PetscCall(list_bodies(&bodies));
+  PetscCall(state_hash(solver_, &hash));
   const EnergyBudget budget = budget_now();
-  add_measures(budget, &summary);
-  PetscCall(list_bodies(&summary));
-  double counted[3] = {0, 0, 0};  // bytes of fields, points where B is evolved, markers of membranes
-  counted[0] = double(solver_->bytes());
-  for (const Phase &phase : state.phases) counted[1] += phase.tensor.evolving.points();
-  for (const BodyInBox &body : solver_->boxed().list()) counted[1] += body.phase->tensor.evolving.points();
-  counted[2] = double(state.markers.size());
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counted, 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
-  summary.bytes_per_cell = counted[0] / domain_->domain_cell_count();
-  summary.active_fraction = counted[1] / domain_->domain_cell_count();
-  PetscCall(state_hash(solver_, &summary.state_hash));
-  const double evolved = (counted[1] + counted[2]) * double(state.step);
-  const Evidence evidence{budget, energy_unknown_, now_.measured, double(state.forgotten), evolved};
+  const double evolved = (totals.evolving + totals.markers) * double(state.step);
+  const Evidence evidence{budget, energy_unknown_, now_, double(state.forgotten), evolved};
   verdicts_ = {judge_energy(evidence), judge_volume_and_area(config_, evidence), judge_strain(evidence)};
-  summary.verdicts = verdicts_;
-  PetscCall(eulastic::write_summary(domain_->comm(), directory_ + "/summary.json", summary));
+  for (const InputFile &file : run.files)
+    files.push_back(Json().add("option", file.option).add("path", file.path).add("content", file.content));
+  for (const SideFlow &side : now_.sides)
+    sides.push_back(Json().add("side", side.name()).add("flow_rate", side.flow_rate).add("pressure", side.pressure));
+  for (const Verdict &verdict : verdicts_)
+    verdicts.push_back(Json().add("of", verdict.of).add("verdict", verdict.verdict).add("why", verdict.why));
+  Json json;
+  add_progress(run, totals, &json);
+  add_measures(budget, &json);
+  json.add("files", files)
+      .add("sides", sides)
+      .add("verdicts", verdicts)
+      .add("bulk_velocity", now_.flow.bulk_velocity[0])
+      .add("state_hash", checksum_text(hash))
+      .add("bodies", bodies);
+  PetscCall(write_text_file(domain_->comm(), directory_ + "/summary.json", json.text()));
   PetscFunctionReturn(0);
 }
 

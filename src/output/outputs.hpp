@@ -6,14 +6,17 @@
 #include "diagnostics/side_flows.hpp"
 #include "grid/domain.hpp"
 #include "io/bodies_file.hpp"
+#include "io/json.hpp"
 #include "io/series.hpp"
-#include "io/summary.hpp"
+#include "io/snapshot.hpp"
 #include "membranes/surface_measures.hpp"
+#include "options/parse_options.hpp"
+#include "output/body_record.hpp"
 #include "output/bond_files.hpp"
 #include "output/due.hpp"
 #include "output/guards.hpp"
 #include "output/sample_files.hpp"
-#include "output/snapshot_output.hpp"
+#include "output/verdict.hpp"
 #include "scene/config.hpp"
 #include "scene/vessels.hpp"
 #include "solver/solver.hpp"
@@ -31,13 +34,22 @@ struct OutputsPosition {
   BondFiles::Position bonds;
 };
 
+/// What summary.json says of a run beside its state and outputs; docs/outputs.md describes every key.
+struct RunSummary {
+  std::string exit_reason;  ///< time_end, steps, signal, wall_limit, nonfinite, guard, output_failed or unfinished
+  std::string checkpoint;   ///< file, in the same directory, from which the run can continue; empty = none
+  double wall_seconds = 0;  ///< of the time loop without output
+  double wall_seconds_total = 0;
+  std::vector<InputFile> files;
+};
+
 class Outputs {
 public:
   /// Measures are available after this call. `position`: of the run that a restart continues.
   void start(const Config &config, const Domain &domain, Solver *solver, const OutputsPosition &position);
   /// Opens the files in `directory`, which exists and is locked by this run. At a restart in the same directory its
-  /// files are cut back to `position`.
-  PetscErrorCode open(const std::string &directory, const OutputsPosition &position, bool same_directory);
+  /// files are cut back to the position of start().
+  PetscErrorCode open(const std::string &directory, bool same_directory);
   /// Rank 0 has moved the files.
   void moved_to(const std::string &directory);
   /// Syncs all rows to the disk and returns their position.
@@ -64,13 +76,13 @@ public:
   /// Measures the state, if that has not been done.
   PetscErrorCode measure();
   /// As of the last measure().
-  const Measured &measured() const { return now_.measured; }
+  const Measured &measured() const { return now_; }
   /// One line about bodies of a few cells at t = 0, which the guards ignore, or nothing. Collective, after measure().
   PetscErrorCode unresolved_bodies(std::string *line) const;
-  /// Writes summary.json; `summary` has the numbers of the time loop, the others are added here.
-  PetscErrorCode write_summary(Summary summary);
+  /// Writes summary.json. Collective.
+  PetscErrorCode write_summary(const RunSummary &run);
   /// Those of the summary that was written last.
-  const std::vector<Summary::Verdict> &verdicts() const { return verdicts_; }
+  const std::vector<Verdict> &verdicts() const { return verdicts_; }
 
 private:
   int few_cells() const { return domain_->dimension() == 3 ? 8 : 4; }
@@ -78,37 +90,33 @@ private:
   /// Of these bodies, with the loads that were measured.
   std::vector<BodyRecord> records(const Measured &measured, const std::vector<BodyMeasure> &bodies,
                                   const std::vector<SurfaceMeasure> &surfaces) const;
-  void add_measures(const EnergyBudget &budget, Summary *summary) const;
-  PetscErrorCode list_bodies(Summary *summary) const;
-  PetscErrorCode measure_drift(Measured *measured);
-  PetscErrorCode measure_strains(Measured *measured);
+  /// Of all ranks: bytes of fields, points where B is evolved, and markers of membranes.
+  struct Totals {
+    double bytes, evolving, markers;
+  };
+  void add_progress(const RunSummary &run, const Totals &totals, Json *json) const;
+  void add_measures(const EnergyBudget &budget, Json *json) const;
+  PetscErrorCode list_bodies(std::vector<Json> *bodies) const;
+  PetscErrorCode measure_largest(Measured *measured);
   double largest_stretch(const std::vector<BodyMeasure> &bodies, const std::vector<SurfaceMeasure> &surfaces,
                          std::size_t b) const;
   /// Of times within the last step.
   PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
-  /// A state and what series.csv has of it beside.
-  struct Row {
-    double dt = 0, step = 0;
-    int bodies = 0;  ///< of the whole box
-    Measured measured;
-    EnergyState energy;
-    std::vector<SideFlow> sides;
-  };
   PetscErrorCode look(Measured *measured);
-  PetscErrorCode measure_energy(const Measured &measured, Row *row);
-  PetscErrorCode look(Row *row);
+  PetscErrorCode measure_energy(Measured *measured);
   void set_energy_scales(EnergyState *energy) const;
   PetscErrorCode await_row(double time_before);
   PetscErrorCode record_power();
   /// Names and values of the columns of series.csv.
-  std::vector<std::pair<std::string, double>> series_row(const Row &row) const;
+  std::vector<std::pair<std::string, double>> series_row(const Measured &row) const;
   PetscErrorCode write_row();
   PetscErrorCode write_row_now();
   EnergyBudget budget_now() const;
 
+  static constexpr int most_bodies = 500;  ///< that summary.json lists
   Config config_;
-  double probes_time_ = -1;  ///< until which those of a run that goes on stay
-  bool membranes_ = false;
+  double probes_time_ = -1;                 ///< until which those of a run that goes on stay
+  bool membranes_ = false, loads_ = false;  ///< whether there are such bodies, or bodies that bear loads
   const Domain *domain_ = nullptr;
   Solver *solver_ = nullptr;
   std::string directory_;
@@ -116,19 +124,17 @@ private:
   SampleFiles samples_;
   std::unique_ptr<BodiesFile> bodies_file_;
   BondFiles bond_files_;  ///< of a scene with adhesion
-  std::unique_ptr<SnapshotOutput> snapshots_;
+  std::unique_ptr<SnapshotWriter> snapshots_;
   Due series_due_, snapshot_due_;
-  Row now_;           ///< as of the last measure()
-  Row row_;           ///< the one that waits, as it was in the middle of the last step, or is written
+  Measured now_;      ///< as of the last measure()
+  Measured row_;      ///< the one that waits, as it was in the middle of the last step, or is written
   Measured written_;  ///< of the last row
   bool waits_ = false, seen_ = false, is_new_ = false;
   double series_time_before_ = -1;  ///< of the row before the one that waits
-  EnergyBudget energy_;
-  std::string energy_unknown_;  ///< why the energy budget cannot be judged, or empty
+  std::string energy_unknown_;      ///< why the energy budget cannot be judged, or empty
   bool area_warned_ = false, stretch_warned_ = false;
-  std::vector<Summary::Verdict> verdicts_;
-  long bodies_rows_ = 0, snapshots_before_ = 0;
-  double mach_max_ = 0;
+  std::vector<Verdict> verdicts_;
+  OutputsPosition position_;  ///< of the last sync(); energy, mach_max and bodies_rows: of the last row
 };
 
 }  // namespace eulastic

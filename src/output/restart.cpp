@@ -3,6 +3,7 @@
 #include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 #include "io/fail_together.hpp"
+#include "io/option_values.hpp"
 #include "options/option_table.hpp"
 #include "options/renamed_options.hpp"
 
@@ -51,11 +52,7 @@ std::string shown(const Value &value) {
 
 // Rank 0's answer counts: others may see the directory a moment later.
 std::vector<std::string> list_everywhere(const std::string &directory) {
-  std::istringstream lines(on_rank_0([&] {
-    std::string text;
-    for (const std::string &path : list_checkpoints(directory)) text += path + "\n";
-    return text;
-  }));
+  std::istringstream lines(on_rank_0([&] { return join(list_checkpoints(directory), "\n"); }));
   std::vector<std::string> paths;
   for (std::string line; std::getline(lines, line);) paths.push_back(line);
   return paths;
@@ -72,8 +69,8 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
   *refusal = changed_option(options, parsed);
   if (!refusal->empty()) PetscFunctionReturn(0);
   PetscCall(load_state(&file, path, solver, position));
-  const std::string step = "time_step";
-  if (values_of(options)[step].differs(values_of(options_text(parsed))[step])) position->dt = 0;  // chosen anew at once
+  if (values_of(options)["time_step"].differs(values_of(options_text(parsed))["time_step"]))
+    position->dt = 0;  // it is chosen anew at once
   if (file.version() != EULASTIC_VERSION)
     (void)PetscFPrintf(
         solver->domain().comm(), stderr, "eulastic: warning: %s\n",
@@ -124,15 +121,11 @@ std::string shorter_end(const Config &config, double held) {
 }
 
 std::string changed_option(const std::string &before, const ParseResult &now) {
-  const auto then = values_of(before), here = values_of(options_text(now));
-  const auto value = [](const std::map<std::string, Value> &values, const std::string &name) {
-    const auto found = values.find(name);
-    return found == values.end() ? Value{} : found->second;
-  };
+  auto then = values_of(before), here = values_of(options_text(now));
   Config config = now.config;
   for (const Option &option : option_table(config)) {
     if (option.applies && !option.applies()) continue;  // earlier versions had some of them in options.txt
-    const Value a = value(then, option.name), b = value(here, option.name);
+    const Value &a = then[option.name], &b = here[option.name];
     if (!option.may_change && a.differs(b))
       return "-" + option.name + ": cannot change at a restart; in the checkpoint: " + shown(a) + ", now: " + shown(b);
   }

@@ -64,6 +64,16 @@ struct Between {
   }
 };
 
+// The energies that the budget needs from the other measures.
+void take_energies(Measured *measured) {
+  EnergyState &energy = measured->energy;
+  energy.kinetic = measured->flow.kinetic_energy;
+  energy.elastic = measured->flow.elastic_energy;
+  energy.surface = measured->surface.energy;
+  energy.surface_power = measured->surface.power;
+  energy.dissipation = measured->flow.viscous_dissipation;
+}
+
 // Moves `measured` by the fraction `share` towards `other`, of a later time with the same bodies and velocity:
 // linearly, for strain energies their square roots. Volume drifts and loads are not changed.
 void interpolate_between(const Measured &other, double share, Measured *measured) {
@@ -77,21 +87,14 @@ void interpolate_between(const Measured &other, double share, Measured *measured
   between(measured->surfaces, other.surfaces);
   if (linear > 0)  // together they have that of the flow
     for (BodyMeasure &body : measured->bodies) body.elastic_energy *= measured->flow.elastic_energy / linear;
-}
-
-void interpolate_between(const EnergyState &other, double share, EnergyState *energy) {
-  const Between between{share};
-  energy->elastic = energy_between(energy->elastic, other.elastic, share);
-  between(energy->surface, other.surface);
-  between(energy->surface_power, other.surface_power);
-  between(energy->dissipation, other.dissipation);
-  between(energy->rates, other.rates);
+  between(measured->energy.rates, other.energy.rates);
+  take_energies(measured);
 }
 
 }  // namespace
 
-// All but volume drifts, of phases as SynchronisedState::phases() has them; `measured`: of another time, or of this
-// velocity.
+// All but volume drifts and strains, of phases as SynchronisedState::phases() has them; `measured`: of another time, or
+// of this velocity.
 PetscErrorCode Outputs::look(Measured *measured) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
@@ -128,23 +131,23 @@ PetscErrorCode Outputs::look(Measured *measured) {
   const double sound_speed = m.flow.divergence_rms > noise ? solver_->sound_speed() : 0;
   m.mach = sound_speed > 0 ? m.flow.speed_max / sound_speed : 0;
   m.time = state.time;
+  m.dt = state.dt;
+  m.step = double(state.step);
+  m.body_count = solver_->bodies().bodies();
+  PetscCall(measure_energy(measured));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Outputs::measure_energy(const Measured &measured, Row *row) {
+PetscErrorCode Outputs::measure_energy(Measured *measured) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   const Fluid &fluid = config_.fluid;
-  EnergyState &energy = row->energy = {};
+  EnergyState &energy = measured->energy = {};
   const std::vector<Phase> *phases = nullptr;
   std::vector<BodyInBox> boxed;
   PetscCall(solver_->synchronised().phases(&phases));
   PetscCall(solver_->synchronised().bodies(&boxed));
-  energy.kinetic = measured.flow.kinetic_energy;
-  energy.elastic = measured.flow.elastic_energy;
-  energy.surface = measured.surface.energy;
-  energy.surface_power = measured.surface.power;
-  energy.dissipation = measured.flow.viscous_dissipation;
+  take_energies(measured);
   const Field *viscosity = nullptr;
   PetscCall(solver_->viscosity_now(&viscosity));
   const EnergyParameters numbers{fluid.density,  fluid.viscosity, fluid.body_force.at(state.time),
@@ -153,21 +156,18 @@ PetscErrorCode Outputs::measure_energy(const Measured &measured, Row *row) {
   double power = 0;
   PetscCall(solver_->force_power(&power));
   energy.rates.force_power += power;
-  for (std::size_t b = 0; b < measured.loads.size(); ++b) {
-    const RigidLoad &load = measured.loads[b];
+  for (std::size_t b = 0; b < measured->loads.size(); ++b) {
+    const RigidLoad &load = measured->loads[b];
     energy.rates.wall_power += load.power;
     energy.wall_range += fluid.viscosity * solver_->rigid()->masses[b].dissipation(solver_->rigid()->motion_of(int(b)),
                                                                                    domain_->dimension());
   }
   PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, fluid.density, state.velocity,
-                               state.pressure, &row->sides));
-  for (const SideFlow &side : row->sides) energy.rates.side_power += side.power;
+                               state.pressure, &measured->sides));
+  for (const SideFlow &side : measured->sides) energy.rates.side_power += side.power;
   set_energy_scales(&energy);
   const bool may_start = config_.time.step == 0 || (solver_->rigid() && solver_->rigid()->moves);
   energy.starts = config_.method.staggered() && may_start && state.step <= starting_steps;
-  row->dt = state.dt;
-  row->step = double(state.step);
-  row->bodies = solver_->bodies().bodies();
   PetscFunctionReturn(0);
 }
 
@@ -192,13 +192,6 @@ void Outputs::set_energy_scales(EnergyState *energy) const {
   const double mass = config_.fluid.density * volume, speed = force * state.dt;
   energy->unknown = 1e-12 * modulus * volume + 0.5 * mass * speed * speed;
   energy->force_range = force * std::sqrt(2 * mass * energy->kinetic);
-}
-
-PetscErrorCode Outputs::look(Row *row) {
-  PetscFunctionBeginUser;
-  PetscCall(look(&row->measured));
-  PetscCall(measure_energy(row->measured, row));
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode Outputs::await_row(double time_before) {
@@ -226,14 +219,12 @@ PetscErrorCode Outputs::record_middle(double dt) {
   PetscFunctionBeginUser;
   StageScope stage(Stage::output);
   EventScope scope(Event::write);
-  Row next = row_;
+  Measured next = row_;
   PetscCall(look(&next));
   const double share = row_.dt / (row_.dt + dt);
-  interpolate_between(next.measured, share, &row_.measured);
-  interpolate_between(next.energy, share, &row_.energy);
-  PetscCall(measure_drift(&row_.measured));
-  PetscCall(measure_strains(&row_.measured));
-  mach_max_ = std::max(mach_max_, row_.measured.mach);
+  interpolate_between(next, share, &row_);
+  PetscCall(measure_largest(&row_));
+  position_.mach_max = std::max(position_.mach_max, row_.mach);
   waits_ = false;
   seen_ = true;
   PetscFunctionReturn(0);
@@ -287,16 +278,16 @@ PetscErrorCode Outputs::record_power() {
   std::vector<RigidLoad> next;
   PetscCall(solver_->rigid_loads(&next));
   for (std::size_t b = 0; b < next.size(); ++b)
-    row_.energy.rates.wall_power += share * (next[b].power - row_.measured.loads[b].power);
+    row_.energy.rates.wall_power += share * (next[b].power - row_.loads[b].power);
   PetscFunctionReturn(0);
 }
 
-std::vector<std::pair<std::string, double>> Outputs::series_row(const Row &row) const {
-  const FlowMeasures &flow = row.measured.flow;
+std::vector<std::pair<std::string, double>> Outputs::series_row(const Measured &row) const {
+  const FlowMeasures &flow = row.flow;
   const EnergyRates &rates = row.energy.rates;
   double solid = 0;
   for (const double volume : flow.phase_volume) solid += volume;
-  std::vector<std::pair<std::string, double>> columns{{"time", row.measured.time},
+  std::vector<std::pair<std::string, double>> columns{{"time", row.time},
                                                       {"step", row.step},
                                                       {"dt", row.dt},
                                                       {"kinetic_energy", flow.kinetic_energy},
@@ -309,24 +300,24 @@ std::vector<std::pair<std::string, double>> Outputs::series_row(const Row &row) 
                                                       {"divergence_rms", flow.divergence_rms},
                                                       {"divergence_max", flow.divergence_max},
                                                       {"solid_volume", solid},
-                                                      {"volume_drift", row.measured.volume_drift},
+                                                      {"volume_drift", row.volume_drift},
                                                       {"force_power", rates.force_power},
                                                       {"wall_power", rates.wall_power},
                                                       {"elastic_power", rates.elastic_power},
-                                                      {"energy_lost", energy_.lost()},
-                                                      {"energy_lost_elastic", energy_.lost_elastic()},
-                                                      {"energy_lost_extended", energy_.lost_extended()},
+                                                      {"energy_lost", position_.energy.lost()},
+                                                      {"energy_lost_elastic", position_.energy.lost_elastic()},
+                                                      {"energy_lost_extended", position_.energy.lost_extended()},
                                                       {"surface_energy", row.energy.surface},
                                                       {"surface_power", row.energy.surface_power}};
   if (!row.sides.empty()) columns.emplace_back("side_power", rates.side_power);
   for (const SideFlow &side : row.sides)
     columns.insert(columns.end(),
                    {{"flow_rate_" + side.name(), side.flow_rate}, {"pressure_" + side.name(), side.pressure}});
-  for (const VesselFlow &vessel : vessel_flows(config_, row.measured.time, flow.bulk_velocity, row.sides))
+  for (const VesselFlow &vessel : vessel_flows(config_, row.time, flow.bulk_velocity, row.sides))
     columns.insert(columns.end(), {{vessel.species + "_flow_rate", vessel.flow_rate},
                                    {vessel.species + "_apparent_viscosity", vessel.apparent_viscosity}});
   if (!solver_->part<Adhesion>()) return columns;
-  const BondTotals &bonds = row.measured.bonds;
+  const BondTotals &bonds = row.bonds;
   columns.insert(columns.end(), {{"bonds", bonds.bonds},
                                  {"bonds_formed", bonds.formed},
                                  {"bonds_broken", bonds.broken},
@@ -341,9 +332,8 @@ PetscErrorCode Outputs::write_row() {
   if (seen_) PetscCall(record_power());
   waits_ = seen_ = false;
   is_new_ = true;
-  Measured &measured = row_.measured;
-  energy_.advance(measured.time, row_.energy);
-  measured.energy_made = energy_unknown_.empty() ? energy_.generated_share() : 0;
+  position_.energy.advance(row_.time, row_.energy);
+  row_.energy_made = energy_unknown_.empty() ? position_.energy.generated_share() : 0;
   std::vector<double> values;
   for (const auto &[name, value] : series_row(row_)) values.push_back(value);
   PetscCall(series_.write(values));
@@ -351,12 +341,18 @@ PetscErrorCode Outputs::write_row() {
     const auto name = [this](int label) -> const std::string & {
       return config_.species[solver_->bodies().species(label)].name;
     };
+    std::vector<double> numbers;
+    for (const BodyRecord &record : records(row_, row_.bodies, row_.surfaces))
+      for_numbers(record, membranes_, loads_, solver_->part<Adhesion>() != nullptr,
+                  [&](const char *, const auto &value) {
+                    const auto *first = reinterpret_cast<const double *>(&value);
+                    numbers.insert(numbers.end(), first, first + sizeof value / sizeof(double));
+                  });
     // As many as there were: others may have come since.
-    PetscCall(
-        bodies_file_->add(measured.time, {row_.bodies, name}, records(measured, measured.bodies, measured.surfaces)));
-    ++bodies_rows_;
+    PetscCall(bodies_file_->add(row_.time, {row_.body_count, name}, numbers));
+    ++position_.bodies_rows;
   }
-  written_ = std::move(measured);  // the next row may wait already when this one is taken
+  written_ = std::move(row_);  // the next row may wait already when this one is taken
   PetscFunctionReturn(0);
 }
 

@@ -7,12 +7,14 @@
 #include "grid/domain.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
+#include "io/option_values.hpp"
 #include "membranes/membrane_transport.hpp"
 #include "openings/inlet_generators.hpp"
 #include "output/checkpoint_range.hpp"
 #include "parts/state.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace eulastic {
@@ -56,24 +58,18 @@ void take_numbers(const CheckpointNumbers &numbers, const CarriedState &state) {
     for (std::size_t n = 0; n < places.size(); ++n) *places[n] = numbers.integers.at(name)[n];
 }
 
-// What a run carries beside the solver, its numbers of energy not included.
+// What a run carries beside the solver.
 void add_position(bool has_bonds, RunPosition *position, CarriedState *state) {
   OutputsPosition &o = position->outputs;
   state->reals["time_step"].push_back(&position->dt);
   state->reals["wall_seconds"] = {&position->wall_seconds, &position->wall_seconds_total};
   state->reals["output_times"] = {&o.series_time, &o.snapshot_time, &o.profile_time};
   state->reals["mach_max"] = {&o.mach_max};
+  state->reals["energy_budget"] = o.energy.numbers();
+  state->reals["energy_made"] = o.energy.generated_numbers();
+  state->integers["stages_and_sweeps"] = {&position->stages, &position->sweeps};
   state->integers["output_rows"] = {&o.series_rows, &o.bodies_rows, &o.snapshots};
   if (has_bonds) state->integers["bond_rows"] = {&o.bonds.bonds, &o.bonds.events};
-}
-
-// All numbers of a checkpoint but those of single bodies.
-CheckpointNumbers numbers_of(const Solver &solver, const CarriedState &state, const RunPosition &position) {
-  CheckpointNumbers numbers = numbers_of(state);
-  numbers.reals["energy_budget"] = position.outputs.energy.numbers();
-  numbers.reals["energy_made"] = position.outputs.energy.generated_numbers();
-  numbers.integers["stages_and_sweeps"] = {solver.stages(), solver.sweeps()};
-  return numbers;
 }
 
 template <class T>
@@ -84,13 +80,13 @@ std::uint64_t hash_arrays(const std::map<std::string, std::vector<T>> &arrays) {
   return sum;
 }
 
-// Null, or the array that has not the length it is expected to have.
-const char *wrong_length(const CheckpointNumbers &expected, const CheckpointNumbers &found) {
+// The array that has not the length it is expected to have, or nothing.
+std::string wrong_length(const CheckpointNumbers &expected, const CheckpointNumbers &found) {
   for (const auto &[name, values] : expected.reals)
-    if (found.reals.at(name).size() != values.size()) return name.c_str();
+    if (found.reals.at(name).size() != values.size()) return name;
   for (const auto &[name, values] : expected.integers)
-    if (found.integers.at(name).size() != values.size()) return name.c_str();
-  return nullptr;
+    if (found.integers.at(name).size() != values.size()) return name;
+  return {};
 }
 
 // Numbers of all bodies on rank 0, from their owners and from inlet generators.
@@ -129,14 +125,19 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
   if (all == 0) PetscFunctionReturn(0);
   PetscCall(file->read_share("bodies.references", 3 * all, 3 * begin, &cells));
   PetscCall(file->read_share("bodies.first_volumes", all, begin, &first_volumes));
-  PetscCall(require_range(domain, path, find_invalid_body(cells, first_volumes)));
+  PetscCall(require_range(domain, path, find_invalid("the cell of a body", cells, {-1e9, 1e9, "-1e9 ... 1e9"})));
+  PetscCall(require_range(domain, path,
+                          find_invalid("the first volume of a body", first_volumes,
+                                       {{0, std::numeric_limits<double>::max(), "a finite number >= 0"}})));
   for (std::size_t n = 0; n < cells.size(); ++n) references[n / 3][n % 3] = static_cast<int>(cells[n]);
   bodies->set_known(std::move(references), std::move(first_volumes));
   if (!generators) PetscFunctionReturn(0);
   std::vector<long> stretches(own.size());
   std::map<int, int> inside;
   PetscCall(file->read_share("bodies_in_feeders", all, begin, &stretches));
-  PetscCall(require_range(domain, path, find_invalid_generator(stretches, generators->count())));
+  const double count = generators->count();
+  PetscCall(
+      require_range(domain, path, find_invalid("bodies_in_feeders", stretches, {0, count, "0 ... " + to_text(count)})));
   for (int b = 0; b < own.size(); ++b)
     if (stretches[b] > 0) inside[own.begin + b + 1] = static_cast<int>(stretches[b]) - 1;
   PetscCall(generators->set_inside(inside));
@@ -155,10 +156,10 @@ PetscErrorCode require_different(const Domain &domain, const std::string &path, 
   PetscCall(send_to_ranks(domain.comm(), owners, &numbers));
   std::sort(numbers.begin(), numbers.end());
   const auto twice = std::adjacent_find(numbers.begin(), numbers.end());
-  PetscCall(require_range(domain, path,
-                          twice == numbers.end() ? ""
-                                                 : std::string(heads_name) + " holds body " + std::to_string(*twice) +
-                                                       " twice; accepted: every body once"));
+  std::string wrong;
+  if (twice != numbers.end())
+    wrong = std::string(heads_name) + " holds body " + std::to_string(*twice) + " twice; accepted: every body once";
+  PetscCall(require_range(domain, path, wrong));
   PetscFunctionReturn(0);
 }
 
@@ -180,7 +181,8 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   CheckpointRecords receptors{receptors_name, 1, {}};
   if (file->has(receptors_name)) PetscCall(file->read_records(&receptors));
   receptors.values.resize(heads.values.size() / FreeBodies::head);
-  PetscCall(require_range(domain, path, find_invalid_count(receptors_name, receptors.values)));
+  PetscCall(require_range(domain, path,
+                          find_invalid(receptors_name, receptors.values, {{0, 1e9, "whole numbers from 0 on", true}})));
   std::vector<std::size_t> sizes;
   for (std::size_t b = 0; b < receptors.values.size(); ++b) {
     const double *head = &heads.values[b * FreeBodies::head];
@@ -243,15 +245,6 @@ PetscErrorCode load_markers(CheckpointFile *file, const std::string &path, Solve
   PetscFunctionReturn(0);
 }
 
-// Where a file has none: from the strain that membranes have.
-PetscErrorCode place_markers(const CheckpointFile &file, Solver *solver) {
-  PetscFunctionBeginUser;
-  if (file.has(markers_name)) PetscFunctionReturn(0);
-  if (auto *membranes = solver->part<MembraneTransport>()) PetscCall(membranes->place_markers());
-  PetscCall(solver->boxed().place_markers());
-  PetscFunctionReturn(0);
-}
-
 }  // namespace
 
 PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
@@ -265,16 +258,11 @@ PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
   if (domain.rank() == 0) sum = hash_arrays(numbers.reals) + hash_arrays(numbers.integers);
   for (const CheckpointField &field : state.fields)
     sum += hash_points(domain, field.view, field.staggering, hash_name(field.name));
-  for (const SurfaceMarker &marker : solver->state().markers) {
-    const auto values = marker.packed();
-    sum += hash_values(values.data(), values.size());
-  }
+  for (const SurfaceMarker &marker : solver->state().markers) sum += hash_values(marker.packed());
   for (const BodyInBox &body : solver->boxed().list()) sum += hash_body(body);
   for (const FreeBodies::Body &body : solver->boxed().bodies().bodies())
-    for (const Receptor &receptor : body.receptors) {
-      const auto values = receptor.packed();
-      sum += mix_bits(hash_values(values.data(), values.size()) ^ static_cast<std::uint64_t>(body.number));
-    }
+    for (const Receptor &receptor : body.receptors)
+      sum += mix_bits(hash_values(receptor.packed()) ^ static_cast<std::uint64_t>(body.number));
   PetscCallMPI(MPI_Allreduce(&sum, hash, 1, MPI_UINT64_T, MPI_SUM, domain.comm()));
   PetscFunctionReturn(0);
 }
@@ -282,11 +270,13 @@ PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
 PetscErrorCode save_state(Solver *solver, const RunPosition &run_position, const std::string &options,
                           const std::string &path) {
   RunPosition position = run_position;
+  position.stages = solver->stages();
+  position.sweeps = solver->sweeps();
   CarriedState state;
   PetscFunctionBeginUser;
   PetscCall(solver->carry(&state));
   add_position(solver->part<Adhesion>() != nullptr, &position, &state);
-  CheckpointNumbers numbers = numbers_of(*solver, state, position);
+  CheckpointNumbers numbers = numbers_of(state);
   PetscCall(gather_numbers(*solver, &numbers));
   std::vector<CheckpointRecords> records = boxes_of(*solver);
   records.push_back(markers_of(solver->state()));
@@ -306,16 +296,16 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
     PetscCall(require_range(domain, path, find_invalid_link(like, solver->bodies().bodies())));
     solver->bodies().set_like(like);
   }
-  PetscCall(require_range(domain, path, find_invalid_count("forgotten", forgotten)));
+  PetscCall(require_range(domain, path, find_invalid("forgotten", forgotten, any_count)));
   solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
   CarriedState state;
   PetscCall(solver->carry(&state));
   add_position(solver->part<Adhesion>() != nullptr, position, &state);
-  const CheckpointNumbers expected = numbers_of(*solver, state, *position);
+  const CheckpointNumbers expected = numbers_of(state);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
-  const char *wrong = wrong_length(expected, numbers);
-  PetscCall(fail_together(domain.comm(), wrong ? path + ": " + wrong + " belongs to another case" : std::string()));
+  const std::string wrong = wrong_length(expected, numbers);
+  PetscCall(require_range(domain, path, wrong.empty() ? wrong : wrong + " belongs to another case"));
   PetscCall(require_range(domain, path, find_invalid_number(numbers)));
   PetscCall(load_bodies(file, path, domain, &solver->bodies(), generators));
   solver->clear_pressure_memory();  // the file may know of fewer increments
@@ -326,11 +316,12 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(file->read_fields(domain, state.fields));
   add_position(solver->part<Adhesion>() != nullptr, position, &state);
   take_numbers(numbers, state);
-  position->outputs.energy.set_numbers(numbers.reals["energy_budget"]);
-  position->outputs.energy.set_generated_numbers(numbers.reals["energy_made"]);
   PetscCall(load_markers(file, path, solver));
-  PetscCall(solver->resume(numbers.integers["stages_and_sweeps"][0], numbers.integers["stages_and_sweeps"][1]));
-  PetscCall(place_markers(*file, solver));
+  PetscCall(solver->resume(position->stages, position->sweeps));
+  if (!file->has(markers_name)) {  // they follow from the strain that membranes have
+    if (auto *membranes = solver->part<MembraneTransport>()) PetscCall(membranes->place_markers());
+    PetscCall(solver->boxed().place_markers());
+  }
   if (auto *adhesion = solver->part<Adhesion>(); adhesion && !file->has(receptors_name))
     PetscCall(adhesion->place_on_bodies());
   PetscFunctionReturn(0);

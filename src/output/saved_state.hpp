@@ -11,6 +11,7 @@ namespace eulastic {
 struct RunPosition {
   double dt = 0;                                    ///< of the time step control
   double wall_seconds = 0, wall_seconds_total = 0;  ///< of all runs that led here
+  std::int64_t stages = 0, sweeps = 0;              ///< viscous stages and pressure iterations of these runs
   OutputsPosition outputs;
 };
 

@@ -46,10 +46,10 @@ void end_now(int) { _exit(1); }
 // five seconds the process exits without it, which the launcher detects.
 void end_all(int signal) {
   char text[160];
-  const int length = std::snprintf(
-      text, sizeof text, "eulastic: error: rank %d received signal %d (%s): a defect of the program or the machine\n",
-      own_rank, signal, signal == SIGSEGV ? "invalid memory" : sigabbrev_np(signal));
-  (void)!::write(STDERR_FILENO, text, static_cast<std::size_t>(length));
+  (void)std::snprintf(text, sizeof text,
+                      "eulastic: error: rank %d received signal %d (%s): a defect of the program or the machine\n",
+                      own_rank, signal, signal == SIGSEGV ? "invalid memory" : sigabbrev_np(signal));
+  say(text);
   handle(SIGALRM, end_now, 0);
   sigset_t alarms;
   (void)sigemptyset(&alarms);

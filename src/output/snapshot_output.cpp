@@ -2,17 +2,13 @@
 
 #include "diagnostics/surface_shear_stress.hpp"
 #include "diagnostics/wall_shear_stress.hpp"
+#include "io/snapshot_fields.hpp"
 #include "solver/synchronised_state.hpp"
 
 #include <algorithm>
 
 namespace eulastic {
 namespace {
-
-bool is_requested(const OutputControl &output, const char *name) {
-  const auto &fields = output.snapshot_fields;
-  return std::find(fields.begin(), fields.end(), name) != fields.end();
-}
 
 SnapshotField as_field(const WallStress &wall, Stored precision) {
   SnapshotField field;
@@ -22,19 +18,6 @@ SnapshotField as_field(const WallStress &wall, Stored precision) {
   field.format.plane_high = wall.high;
   field.components = {wall.view(0), wall.view(1), wall.view(2)};
   return field;
-}
-
-SnapshotSelection selection(const Config &config) {
-  const OutputControl &output = config.output;
-  const auto wanted = [&](const char *name) { return is_requested(output, name); };
-  SnapshotSelection s;
-  s.velocity = wanted("velocity");
-  s.pressure = wanted("pressure");
-  s.solid_fraction = wanted("solid_fraction");
-  s.left_cauchy_green = wanted("left_cauchy_green");
-  s.body = wanted("body") && config.body_series;
-  s.precision = output.snapshot_single ? Stored::float32 : Stored::float64;
-  return s;
 }
 
 // phi of the vessels and obstacles that are rigid, or of those that are not, with ghosts; empty if there are none.
@@ -58,26 +41,21 @@ PetscErrorCode solid_of_vessels(const Config &config, bool rigid, const std::vec
   PetscFunctionReturn(0);
 }
 
-}  // namespace
-
-PetscErrorCode SnapshotOutput::write(const Config &config, Solver *solver) {
-  PetscFunctionBeginUser;
-  PetscCall(solver->synchronised().with_bodies_on_grid(
-      [&](const std::vector<Phase> &phases) { return write_fields(config, solver, phases); }));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SnapshotOutput::write_fields(const Config &config, Solver *solver, const std::vector<Phase> &phases) {
+PetscErrorCode write_fields(const Config &config, Solver *solver, const std::vector<Phase> &phases,
+                            SnapshotWriter *writer) {
   PetscFunctionBeginUser;
   const State &state = solver->state();
   const Domain &domain = solver->domain();
   const Field *viscosity = nullptr;
   PetscCall(solver->viscosity_now(&viscosity));
-  const SnapshotSelection wanted = selection(config);
-  std::vector<SnapshotField> fields = fields_.collect(wanted, state.velocity, state.pressure, phases);
+  const std::vector<std::string> &wanted = config.output.snapshot_fields;
+  const bool stresses = std::find(wanted.begin(), wanted.end(), "wall_shear_stress") != wanted.end();
+  const Stored precision = config.output.snapshot_single ? Stored::float32 : Stored::float64;
+  SnapshotFields of_state(domain);
+  std::vector<SnapshotField> fields = of_state.collect(wanted, precision, state.velocity, state.pressure, phases);
   std::vector<WallStress> walls;
   Field rigid, elastic, stress, widened;
-  if (is_requested(config.output, "wall_shear_stress") || config.output.snapshot_vti) {
+  if (stresses || config.output.snapshot_vti) {
     EdgeViscosity of_place{domain, config.fluid.viscosity, config.fluid.density, viscosity};
     walls = wall_shear_stress(domain, config.sides, state.time, of_place, state.velocity, phases);
     PetscCall(solid_of_vessels(config, true, phases, solver, &rigid));
@@ -91,14 +69,23 @@ PetscErrorCode SnapshotOutput::write_fields(const Config &config, Solver *solver
     }
     if (elastic) add_elastic_surface_stress({of_place, state.velocity, phases}, elastic[0], stress);
   }
-  for (const WallStress &wall : walls) fields.push_back(as_field(wall, wanted.precision));
+  for (const WallStress &wall : walls) fields.push_back(as_field(wall, precision));
   if (stress) {
     const Field &view = stress;
     SnapshotField &field = fields.emplace_back();
-    field.format = {"wall_shear_stress", at_centre, wanted.precision};
+    field.format = {"wall_shear_stress", at_centre, precision};
     field.components = {view[0], view[1], view[2]};
   }
-  PetscCall(writer_.write(state.time, static_cast<long>(state.step), fields));
+  PetscCall(writer->write(state.time, static_cast<long>(state.step), fields));
+  PetscFunctionReturn(0);
+}
+
+}  // namespace
+
+PetscErrorCode write_snapshot(const Config &config, Solver *solver, SnapshotWriter *writer) {
+  PetscFunctionBeginUser;
+  PetscCall(solver->synchronised().with_bodies_on_grid(
+      [&](const std::vector<Phase> &phases) { return write_fields(config, solver, phases, writer); }));
   PetscFunctionReturn(0);
 }
 

@@ -31,8 +31,8 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
                                        std::string *warning) {
   PetscFunctionBeginUser;
   const State &state = solver->state();
-  const bool large_steps = solver->spec().staggered();
-  const int interval = large_steps ? 1 : euler_interval;
+  const bool staggered = solver->spec().staggered();
+  const int interval = staggered ? 1 : euler_interval;
   const bool look = state.step % interval == 0 || dt_ == 0;
   measured_ = look;
   if (look) {
@@ -46,7 +46,7 @@ PetscErrorCode TimeStepControl::choose(Solver *solver, const Guards &guards, dou
       }
     } else {
       dt_ = limits.automatic();
-      const bool starts = solver->spec().staggered() && state.step < starting_steps;
+      const bool starts = staggered && state.step < starting_steps;
       if (starts && state.step == 0) dt_ *= std::pow(starting_growth, -starting_steps);
       if (state.dt > 0) dt_ = std::min(dt_, (starts ? starting_growth : growth) * state.dt);
     }

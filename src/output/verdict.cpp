@@ -28,7 +28,7 @@ double over(double a, double b) { return b > 0 ? a / b : 0; }
 
 }  // namespace
 
-Summary::Verdict judge_energy(const Evidence &e) {
+Verdict judge_energy(const Evidence &e) {
   const std::string of = "energy", all = " of the energy that it held and was supplied with";
   const double made = e.budget.generated_share_max(), lost = over(e.budget.lost(), e.budget.throughput()),
                uncertainty = over(e.budget.uncertainty(), e.budget.throughput());
@@ -48,7 +48,7 @@ Summary::Verdict judge_energy(const Evidence &e) {
               (uncertainty > 0.01 ? ", known within " + percent(uncertainty) : "")};
 }
 
-Summary::Verdict judge_volume_and_area(const Config &config, const Evidence &e) {
+Verdict judge_volume_and_area(const Config &config, const Evidence &e) {
   const std::string of = "volume and area";
   if (const std::vector<std::string> coarse = coarse_drop_warnings(config); !coarse.empty())
     return {of, do_not_trust, coarse.front()};
@@ -63,13 +63,13 @@ Summary::Verdict judge_volume_and_area(const Config &config, const Evidence &e) 
   return {of, fine, red_cells ? why + ", " + of_area + " at most" : why};
 }
 
-Summary::Verdict judge_strain(const Evidence &e) {
+Verdict judge_strain(const Evidence &e) {
   if (e.forgotten == 0) return {"strain", fine, "the grid resolved it everywhere"};
   const double share = over(e.forgotten, e.evolved);
   return {"strain", share > forgotten_not_to_trust ? do_not_trust : look,
           "the grid did not resolve it at " + percent(share) + " of the points, where a part of it was lost"};
 }
 
-std::string verdict_line(const Summary::Verdict &v) { return v.of + ": " + v.verdict + " (" + v.why + ")"; }
+std::string verdict_line(const Verdict &v) { return v.of + ": " + v.verdict + " (" + v.why + ")"; }
 
 }  // namespace eulastic

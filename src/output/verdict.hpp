@@ -5,10 +5,13 @@
 #pragma once
 
 #include "diagnostics/energy_budget.hpp"
-#include "io/summary.hpp"
 #include "output/guards.hpp"
 
 namespace eulastic {
+
+struct Verdict {
+  std::string of, verdict, why;
+};
 
 /// Input of the verdicts.
 struct Evidence {
@@ -19,10 +22,10 @@ struct Evidence {
   double evolved;  ///< points at which B was evolved, and markers of membranes, as many as at the end in all steps
 };
 
-Summary::Verdict judge_energy(const Evidence &evidence);
-Summary::Verdict judge_volume_and_area(const Config &config, const Evidence &evidence);
-Summary::Verdict judge_strain(const Evidence &evidence);
+Verdict judge_energy(const Evidence &evidence);
+Verdict judge_volume_and_area(const Config &config, const Evidence &evidence);
+Verdict judge_strain(const Evidence &evidence);
 /// One line.
-std::string verdict_line(const Summary::Verdict &verdict);
+std::string verdict_line(const Verdict &verdict);
 
 }  // namespace eulastic

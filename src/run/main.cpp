@@ -36,16 +36,14 @@ int program(int argc, char **argv) {
   ParseResult parsed = parse({argv + 1, argv + argc}, environment);
   parsed.program = argv[0];
   unsetenv("PETSC_OPTIONS");
+  const bool runs = !parsed.config.check_only && !parsed.config.print_options;  // no -log_view without a run
+  std::vector<std::string> words = petsc_arguments(runs ? parsed.petsc : PetscOptionValues());
   std::vector<char *> petsc{argv[0]};
-  for (std::string &argument : parsed.petsc_arguments) {
-    petsc.push_back(argument.data());
-    if (parsed.config.check_only || parsed.config.print_options)
-      break;  // after -skip_petscrc: no -log_view without a run
-  }
+  for (std::string &word : words) petsc.push_back(word.data());
   petsc.push_back(nullptr);
   int petsc_count = static_cast<int>(petsc.size()) - 1;
-  char **petsc_arguments = petsc.data();
-  if (PetscInitialize(&petsc_count, &petsc_arguments, nullptr, nullptr)) return exit_failed;
+  char **petsc_words = petsc.data();
+  if (PetscInitialize(&petsc_count, &petsc_words, nullptr, nullptr)) return exit_failed;
   // Neighbours are found without an array over all ranks on every rank.
   (void)PetscCommBuildTwoSidedSetType(PETSC_COMM_WORLD, PETSC_BUILDTWOSIDED_IBARRIER);
   catch_faults();

@@ -5,7 +5,6 @@
 #include "base/progress.hpp"
 #include "base/rank_zero.hpp"
 #include "grid/domain.hpp"
-#include "grid/threads.hpp"
 #include "io/fail_together.hpp"
 #include "io/run_directory.hpp"
 #include "io/text_file.hpp"
@@ -14,7 +13,6 @@
 #include "output/signals.hpp"
 #include "output/time_step_control.hpp"
 #include "output/verdict.hpp"
-#include "run/last_word.hpp"
 #include "run/waiting.hpp"
 #include "scene/balance.hpp"
 #include "scene/lumens.hpp"
@@ -23,8 +21,9 @@
 #include "scene/scene.hpp"
 #include "scene/scene_warnings.hpp"
 
+#include <cctype>
 #include <cstdio>
-#include <cstdlib>
+#include <map>
 
 namespace eulastic {
 namespace {
@@ -58,24 +57,6 @@ bool finished(const State &state, const TimeControl &time, std::string *reason) 
 
 void print_warning(MPI_Comm comm, const std::string &warning) {
   if (!warning.empty()) (void)PetscFPrintf(comm, stderr, "eulastic: warning: %s\n", one_line(warning).c_str());
-}
-
-// Starts the threads of this rank. `line`: how they wait.
-PetscErrorCode start_threads(int threads, std::string *line, std::string *refusal) {
-  PetscFunctionBeginUser;
-  const std::string wanted = on_rank_0([] {
-    const char *given = std::getenv("EULASTIC_WAIT");
-    return std::string(given ? given : "");
-  });
-  WaitingChoice waiting;
-  PetscCall(choose_waiting(run_communicator(), threads, wanted, &waiting));
-  *refusal = waiting.error;
-  if (!refusal->empty()) PetscFunctionReturn(0);
-  set_threads(threads);
-  ThreadTeam::team_of_rank().set_waiting(waiting.how);
-  print_warning(run_communicator(), waiting.warning);
-  *line = waiting.line;
-  PetscFunctionReturn(0);
 }
 
 // Of the scene at the start.
@@ -118,20 +99,16 @@ PetscErrorCode open_outputs(Run *run) {
   ParseResult whole = run->parsed;
   if (run->in_place) whole.config.checkpoint.restart.clear();  // the run from t = 0 on
   PetscCall(write_text_file(run->solver.domain().comm(), run->directory.file("options.txt"), options_text(whole)));
-  PetscCall(run->outputs.open(run->directory.path(), run->position.outputs, run->in_place));
+  PetscCall(run->outputs.open(run->directory.path(), run->in_place));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode write_summary(const std::string &reason, Run *run) {
   PetscFunctionBeginUser;
-  Summary summary;
-  summary.exit_reason = reason;
-  for (const InputFile &file : run->parsed.inputs) summary.files.push_back({file.option, file.path, file.content});
-  summary.checkpoint = run->noted = run->checkpoints.newest();
-  summary.wall_seconds = run->position.wall_seconds;
-  summary.wall_seconds_total = run->total_before + MPI_Wtime() - run->begin;
+  run->noted = run->checkpoints.newest();
   run->summary_failed = true;
-  PetscCall(run->outputs.write_summary(summary));
+  PetscCall(run->outputs.write_summary({reason, run->noted, run->position.wall_seconds,
+                                        run->total_before + MPI_Wtime() - run->begin, run->parsed.inputs}));
   run->summary_failed = false;
   PetscFunctionReturn(0);
 }
@@ -249,6 +226,15 @@ PetscErrorCode balance(const std::string &restarted_from, Domain *domain, Run *r
   PetscFunctionReturn(0);
 }
 
+// One line with the version, the size and the output directory.
+std::string first_word(const Config &config, int ranks) {
+  const Int3 &n = config.grid.cells;
+  std::string line = print("eulastic %s: %d x %d x %d cells on %d rank%s", EULASTIC_VERSION, n[0], n[1], n[2], ranks,
+                           ranks > 1 ? "s" : "");
+  if (config.threads > 1) line += " of " + std::to_string(config.threads) + " threads";
+  return line + "; results go to " + config.output.directory;
+}
+
 // The directory and the state, new or as a checkpoint has them. `refusal`: one line if the run cannot start.
 PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
   PetscFunctionBeginUser;
@@ -261,7 +247,7 @@ PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
   double thrown_away = 0;
   PetscCall(build_scene(config, domain, &run->solver, refusal));
   if (refusal->empty() && source.empty()) PetscCall(find_overlap(domain.comm(), config, &overlap, refusal));
-  if (refusal->empty()) PetscCall(find_unread_option(petsc_option_values(parsed.petsc_arguments), refusal));
+  if (refusal->empty()) PetscCall(find_unread_option(parsed.petsc, refusal));
   if (refusal->empty() && run->in_place)
     PetscCall(run->directory.open(domain.comm(), path, Earlier::continued, refusal));
   if (refusal->empty() && !source.empty())
@@ -301,16 +287,55 @@ PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
   PetscFunctionReturn(0);
 }
 
+// As one word of a shell.
+std::string quoted(const std::string &word) {
+  bool plain = !word.empty();
+  for (unsigned char c : word)
+    plain = plain && (std::isalnum(c) || std::string("_-./+:,=@%").find(c) != std::string::npos);
+  if (plain) return word;
+  std::string text = "'";
+  for (char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+// The command that continues the run, for a shell in the directory in which it was started.
+std::string command_to_continue(const Run &run) {
+  const std::string &directory = run.parsed.config.output.directory;
+  const int ranks = run.solver.domain().ranks();
+  return (ranks > 1 ? "mpiexec -n " + std::to_string(ranks) + " " : "") + quoted(run.parsed.program) + " " +
+         quoted(directory + "/options.txt") + " -restart " + quoted(directory) + " -output_dir " + quoted(directory) +
+         (run.exit_reason == "time_end" ? " -time_end LATER"
+          : run.exit_reason == "steps"  ? " -time_steps_max MORE"
+                                        : "");
+}
+
+// One line: the reason of the end, time and step, the output directory, and how to continue.
+std::string last_word(const Run &run) {
+  static const std::map<std::string, std::string> words{
+      {"time_end", "reached -time_end"},    {"steps", "reached -time_steps_max"},
+      {"signal", "stopped by a signal"},    {"wall_limit", "stopped by -stop_after_minutes"},
+      {"guard", "stopped by a guard"},      {"nonfinite", "stopped because numbers are not finite"},
+      {"output_failed", "could not write"},
+  };
+  const State &state = run.solver.state();
+  const std::string &reason = run.exit_reason, checkpoint = run.checkpoints.newest();
+  const std::string line = "eulastic: " + words.at(reason) +
+                           print(" at t = %.9g, step %lld; results: ", state.time, static_cast<long long>(state.step)) +
+                           run.parsed.config.output.directory;
+  if (checkpoint.empty()) return line + "; there is no checkpoint to continue from";
+  if (reason == "time_end" || reason == "steps") return line + "; to continue: " + command_to_continue(run);
+  const bool wrong = reason == "guard" || reason == "nonfinite";
+  return line + "; to continue from " + checkpoint + (wrong ? ", with the remedy of the error: " : ": ") +
+         command_to_continue(run);
+}
+
 // The last lines of a run that was accepted.
 PetscErrorCode say_last_word(const Run &run) {
   PetscFunctionBeginUser;
-  const State &state = run.solver.state();
   const MPI_Comm comm = run.solver.domain().comm();
-  const std::string line = last_word(
-      run.parsed, {run.exit_reason, state.time, state.step, run.solver.domain().ranks(), run.checkpoints.newest()});
-  for (const Summary::Verdict &verdict : run.outputs.verdicts())
+  for (const Verdict &verdict : run.outputs.verdicts())
     PetscCall(PetscPrintf(comm, "eulastic: %s\n", verdict_line(verdict).c_str()));
-  PetscCall(PetscPrintf(comm, "%s\n", line.c_str()));
+  PetscCall(PetscPrintf(comm, "%s\n", last_word(run).c_str()));
   PetscFunctionReturn(0);
 }
 
@@ -324,9 +349,10 @@ PetscErrorCode run(const ParseResult &parsed, int *code, std::string *refusal) {
   catch_signals();
   PetscCall(check_sizes(run_communicator(), config, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
-  std::string waiting;
-  PetscCall(start_threads(config.threads, &waiting, refusal));
+  std::string waiting, warning;
+  PetscCall(start_threads(config.threads, &waiting, &warning, refusal));
   if (!refusal->empty()) PetscFunctionReturn(0);
+  print_warning(run_communicator(), warning);
   Domain domain;
   PetscCall(domain.create(run_communicator(), config.grid));
   const bool in_place = !config.checkpoint.restart.empty() && restarts_in_place(config);

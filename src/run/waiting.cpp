@@ -1,6 +1,11 @@
 #include "run/waiting.hpp"
 
+#include "base/rank_zero.hpp"
+#include "base/team.hpp"
+#include "grid/threads.hpp"
+
 #include <sched.h>
+#include <cstdlib>
 
 namespace eulastic {
 namespace {
@@ -28,26 +33,30 @@ PetscErrorCode query_node(MPI_Comm comm, Node *node) {
 
 }  // namespace
 
-PetscErrorCode choose_waiting(MPI_Comm comm, int threads, const std::string &wanted, WaitingChoice *choice) {
+PetscErrorCode start_threads(int threads, std::string *line, std::string *warning, std::string *refusal) {
   PetscFunctionBeginUser;
-  *choice = {};
+  const std::string wanted = on_rank_0([] {
+    const char *given = std::getenv("EULASTIC_WAIT");
+    return std::string(given ? given : "");
+  });
   if (wanted != "" && wanted != "spin" && wanted != "sleep") {
-    choice->error = "EULASTIC_WAIT: '" + wanted + "'; accepted: spin, sleep";
+    *refusal = "EULASTIC_WAIT: '" + wanted + "'; accepted: spin, sleep";
     PetscFunctionReturn(0);
   }
+  set_threads(threads);
   if (threads == 1) PetscFunctionReturn(0);
   Node node;
-  PetscCall(query_node(comm, &node));
+  PetscCall(query_node(run_communicator(), &node));
   const bool fit = node.own_processors >= threads && node.processors >= node.ranks * threads;
-  choice->how = wanted == "spin" || (wanted == "" && fit) ? Waiting::spin : Waiting::sleep;
-  choice->line = std::to_string(node.ranks * threads) + " threads on " + std::to_string(node.processors) +
-                 " processor(s) of this node " + (choice->how == Waiting::spin ? "spin" : "sleep") +
-                 " while they wait" + (wanted == "" ? "" : ", as EULASTIC_WAIT says");
+  const bool spin = wanted == "spin" || (wanted == "" && fit);
+  ThreadTeam::team_of_rank().set_waiting(spin ? Waiting::spin : Waiting::sleep);
+  *line = std::to_string(node.ranks * threads) + " threads on " + std::to_string(node.processors) +
+          " processor(s) of this node " + (spin ? "spin" : "sleep") + " while they wait" +
+          (wanted == "" ? "" : ", as EULASTIC_WAIT says");
   if (node.own_processors < threads)
-    choice->warning = "-threads " + std::to_string(threads) + ": this rank may use " +
-                      std::to_string(node.own_processors) +
-                      " processor(s); with Open MPI, mpiexec --map-by slot:PE=" + std::to_string(threads) +
-                      " gives a rank as many as it has threads";
+    *warning = "-threads " + std::to_string(threads) + ": this rank may use " + std::to_string(node.own_processors) +
+               " processor(s); with Open MPI, mpiexec --map-by slot:PE=" + std::to_string(threads) +
+               " gives a rank as many as it has threads";
   PetscFunctionReturn(0);
 }
 

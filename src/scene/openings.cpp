@@ -55,7 +55,7 @@ std::string read_table(const std::string &path, TimeCourse *course) {
 // Reads a number, or a table. Collective. Returns what is wrong, or nothing.
 std::string read_course(const std::string &text, TimeCourse *course) {
   double value;
-  if (read_reals(text, any_number, &value, 1).empty()) {
+  if (read_numbers(text, any_number, &value, 1).empty()) {
     course->value = value;
     return {};
   }
@@ -126,7 +126,7 @@ std::string resolve_wall(const Config &config, int d, int high, BoundaryConditio
   const OpeningSpec &spec = config.openings[d][high];
   side->motion = {{}, spec.frequency, spec.phase};
   if (spec.velocity.empty()) return {};
-  const std::string wrong = read_reals(spec.velocity, any_number, side->motion.velocity.data(), 3);
+  const std::string wrong = read_numbers(spec.velocity, any_number, side->motion.velocity.data(), 3);
   if (wrong.empty()) return {};
   return "-boundary_" + side_name(d, high) + "_velocity: " + wrong +
          "; accepted: for a wall 3 numbers, separated by commas";

@@ -84,7 +84,7 @@ TEST(BodyOwners, WriteOneFile) {
   char shared[1000] = "";
   std::snprintf(shared, sizeof shared, "%s", path.c_str());
   ASSERT_EQ(MPI_Bcast(shared, sizeof shared, MPI_CHAR, 0, run_communicator()), 0);
-  BodiesFile file(run_communicator(), shared, {true, true, false});
+  BodiesFile file(run_communicator(), shared, {{"centroid", 3}, {"volume", 1}, {"turning_rate", 1}, {"torque", 3}});
   constexpr int rows = 23, before = 7, after = 9, change = 11;
   const auto value = [](int row, int body, int n) { return 1000. * row + 100 * body + n; };
   for (int row = 0; row < rows; ++row) {
@@ -92,16 +92,10 @@ TEST(BodyOwners, WriteOneFile) {
     static const std::string cell = "cell";
     const BodySpecies all{bodies, [](int) -> const std::string & { return cell; }};
     const BodyRange own = BodyRange::of(bodies, world.rank, world.ranks);
-    std::vector<BodyRecord> records;
-    for (int b = own.begin; b < own.end; ++b) {
-      BodyRecord record;
-      for (int d = 0; d < 3; ++d) record.centroid[d] = value(row, b, d);
-      record.volume = value(row, b, 3);
-      record.turning_rate = value(row, b, 4);
-      for (int d = 0; d < 3; ++d) record.torque[d] = value(row, b, 5 + d);
-      records.push_back(record);
-    }
-    ASSERT_EQ(file.add(0.5 * row, all, records), 0);
+    std::vector<double> values;
+    for (int b = own.begin; b < own.end; ++b)
+      for (int n = 0; n < 8; ++n) values.push_back(value(row, b, n));
+    ASSERT_EQ(file.add(0.5 * row, all, values), 0);
   }
   ASSERT_EQ(file.flush(), 0);
   if (world.rank > 0) return;

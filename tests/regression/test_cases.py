@@ -4,6 +4,7 @@ finite, and gives the same results on three ranks. Cases whose start or first mo
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -27,6 +28,9 @@ FAST_ALONE = ["bending_ring", "capillary_red_cells_h20", "capsule_in_shear", "ch
               "oscillating_cylinder", "red_cell_in_shear", "red_cell_in_tube", "red_cell_in_tweezers", "stirrer",
               "thrombus_patch", "tumbling_capsule"]
 STEPS = 3
+# The first column of the table of docs/outputs.md, "summary.json".
+DOCUMENTED = {key for row in (ROOT / "docs/outputs.md").read_text().split("## summary.json")[1].split("\n## ")[0].splitlines()
+              if row.startswith("| `") for key in re.findall(r"`(\w+)`", row.split("|")[1])}
 
 
 def environment(options=""):
@@ -63,6 +67,10 @@ class Cases(unittest.TestCase):
 
     def check_files(self, run, drift=0.01):
         summary = run.summary
+        self.assertEqual(set(summary), DOCUMENTED)
+        self.assertAlmostEqual(summary["cell_updates_per_second"] * summary["ns_per_cell_step"], 1e9, delta=1)
+        self.assertEqual(summary["ns_per_cell_step"], 1e9 * summary["wall_seconds"] / (summary["cells"] * summary["steps"]))
+        self.assertRegex(summary["state_hash"], "^[0-9a-f]{16}$")
         self.assertEqual((summary["exit_reason"], summary["steps"]), ("steps", STEPS))
         for name in ("kinetic_energy", "elastic_energy", "divergence_rms", "time", "bulk_velocity"):
             self.assertTrue(math.isfinite(summary[name]), name)

@@ -60,8 +60,8 @@ int run_case(MPI_Comm comm, const Words &words, const std::string &name) {
   const RunOnRanks part(comm);
   const Redirect out(stdout, name + ".out"), err(stderr, name + ".err");
   ParseResult parsed = parse(words);
-  Words given{"run_many"};
-  given.insert(given.end(), parsed.petsc_arguments.begin(), parsed.petsc_arguments.end());
+  Words given = petsc_arguments(parsed.petsc);
+  given.insert(given.begin(), "run_many");
   std::vector<char *> pointers;
   for (std::string &word : given) pointers.push_back(word.data());
   pointers.push_back(nullptr);

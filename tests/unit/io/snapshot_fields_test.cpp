@@ -28,12 +28,10 @@ TEST_P(MixedTensors, WeighTheSpeciesByTheirFractionsAtThePlaceOfEveryComponent) 
     for (int c = 0; c < phases[p].tensor.field.count(); ++c)
       for_points(box.rows(), [&](int i, int j, int k) { phases[p].tensor.field[c](i, j, k) = value(p, c, i, j, k); });
   }
-  SnapshotSelection selection;
-  selection.left_cauchy_green = true;
   SnapshotFields fields(box);
   const Field velocity(box, dimension), pressure(box, 1);
   int found = 0;
-  for (const SnapshotField &field : fields.collect(selection, velocity, pressure, phases))
+  for (const SnapshotField &field : fields.collect({"left_cauchy_green"}, Stored::float64, velocity, pressure, phases))
     for (int c = 0; c < phases[0].tensor.field.count(); ++c) {
       const TensorComponent &component = phases[0].tensor.components()[c];
       if (field.format.name != "left_cauchy_green_" + component.name()) continue;

@@ -48,12 +48,12 @@ TEST_F(GuardsTest, EachTripsBeyondItsBoundOnly) {
     const char *name;
   };
   Measured bad = good;
-  bad.drifting_body = 3;
+  bad.resolved_drift.label = 3;
   GuardControl &guard = config.guard;
   for (const Case &c : {Case{&guard.divergence, &bad.flow.divergence_rms, "-guard_divergence 0.25"},
                         Case{&guard.mach, &bad.mach, "-guard_mach 0.25"},
                         Case{&guard.energy_growth, &bad.energy_made, "-guard_energy_growth 0.25"},
-                        Case{&guard.volume_drift, &bad.resolved_drift, "body 3"}}) {
+                        Case{&guard.volume_drift, &bad.resolved_drift.value, "body 3"}}) {
     *c.bound = 0.25;
     const double usual = std::exchange(*c.value, 0.25);
     EXPECT_FALSE(check(bad)) << c.name;
