@@ -4,7 +4,6 @@
 #include "base/events.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
-#include "io/growing_datasets.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -15,13 +14,6 @@ namespace eulastic {
 namespace {
 
 constexpr std::size_t waiting_bytes_max = 64u << 20;
-
-// The directory is locked, and not all file systems can.
-Hdf5Property unlocked_access() {
-  Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
-  (void)H5Pset_file_locking(access.get(), false, true);
-  return access;
-}
 
 // `id` and `species`: who the bodies are.
 bool write_bodies(hid_t file, const BodySpecies &bodies) {
@@ -63,9 +55,10 @@ std::string copy_file(const std::string &path, const std::string &target) {
 BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &columns)
     : comm_(comm), path_(std::move(path)), has_(columns) {
   for_numbers({}, has_.membranes, has_.loads, has_.bonds, [&](const char *name, const auto &value) {
-    columns_.push_back({name, static_cast<int>(sizeof value / sizeof(double)), 0});
+    const std::size_t width = sizeof value / sizeof(double);
+    columns_.emplace_back(name, width > 1 ? 3 : 2, width);
+    width_ += width;
   });
-  for (const Column &column : columns_) width_ += column.width;
   (void)MPI_Comm_rank(comm, &rank_);
   (void)MPI_Comm_size(comm, &ranks_);
 }
@@ -98,13 +91,11 @@ std::string BodiesFile::cut(std::size_t rows) {
     std::filesystem::remove(path_, error);
     return error ? path_ + ": cannot be removed (" + error.message() + ")" : "";
   }
-  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const std::string target = temporary_name(path_);
   if (std::string problem = copy_file(path_, target); !problem.empty()) return problem;
-  Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, unlocked_access().get()));
-  bool fine = bool(file);
-  fine = fine && cut_rows(file.get(), "time", rows, &time_checksum_);
-  for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name, rows, &column.checksum);
+  Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, hdf5_local_access().get()));
+  bool fine = file && time_.cut(file.get(), rows);
+  for (GrowingDataset &column : columns_) fine = fine && column.cut(file.get(), rows);
   if (!file.close() || !fine) {
     std::filesystem::remove(target, error);
     return path_ +
@@ -153,22 +144,19 @@ PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *valu
   PetscFunctionReturn(0);
 }
 
-// Of bodies [begin, end), as collected.
-bool BodiesFile::write_block(hid_t file, int begin, int end, const std::vector<double> &values) {
-  const std::size_t rows = times_.size(), bodies = static_cast<std::size_t>(end - begin), all = known_.bodies;
+// Writes the values of bodies [begin, end) that collect() has found.
+bool BodiesFile::write_columns(hid_t file, int begin, int end, const std::vector<double> &values) {
+  const std::size_t rows = times_.size(), bodies = static_cast<std::size_t>(end - begin);
   std::size_t first = 0;  // of the column
-  for (Column &column : columns_) {
-    const auto width = static_cast<std::size_t>(column.width);
-    std::vector<double> part(rows * bodies * width);
-    for (std::size_t row = 0; row < rows; ++row) {
-      double *const to = part.data() + row * bodies * width;
-      for (std::size_t b = 0; b < bodies; ++b)
-        std::copy_n(values.data() + (b * rows + row) * width_ + first, width, to + b * width);
-      column.checksum += checksum(to, bodies * width, ((written_ + row) * all + begin) * width);
-    }
-    if (!write_part(file, column.name, {written_, rows, static_cast<hsize_t>(begin), bodies, width}, part))
-      return false;
-    first += width;
+  for (GrowingDataset &column : columns_) {
+    std::vector<double> part;
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t b = 0; b < bodies; ++b) {
+        const double *from = values.data() + (b * rows + row) * width_ + first;
+        part.insert(part.end(), from, from + column.width());
+      }
+    if (!column.write(file, written_, begin, bodies, part)) return false;
+    first += column.width();
   }
   return true;
 }
@@ -184,32 +172,25 @@ PetscErrorCode BodiesFile::write_waiting() {
   Hdf5FileHandle file;
   bool fine = true;
   if (rank_ == 0) {
-    (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     problem = written_ > 0 ? copy_file(path_, target) : "";
-    const Hdf5Property access = unlocked_access();
+    const Hdf5Property access = hdf5_local_access();
     if (problem.empty())
       file = Hdf5FileHandle(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
                                           : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
     if (problem.empty() && !file) problem = path_ + ": cannot be opened (" + std::strerror(errno) + ")";
     fine = problem.empty() && (stored_ == bodies || write_bodies(file.get(), known_));
-    for (Column &column : columns_) {
-      if (written_ > 0 && stored_ != bodies)
-        fine = fine && set_bodies(file.get(), column.name, bodies, &column.checksum);
-      fine = fine && set_rows(file.get(), column.name, {written_, rows, 0, bodies, static_cast<hsize_t>(column.width)});
-    }
+    for (GrowingDataset &column : columns_) fine = fine && column.resize(file.get(), written_ + rows, bodies);
   }
   std::vector<double> values;
   for (int begin = 0; begin < static_cast<int>(bodies); begin += BodyRange::piece) {
     const int end = std::min(begin + BodyRange::piece, static_cast<int>(bodies));
     PetscCall(collect(begin, end, &values));
-    if (rank_ == 0) fine = fine && write_block(file.get(), begin, end, values);
+    if (rank_ == 0) fine = fine && write_columns(file.get(), begin, end, values);
   }
   if (rank_ == 0 && problem.empty()) {
-    time_checksum_ += checksum(times_.data(), rows, written_);
-    fine = fine && set_rows(file.get(), "time", {written_, rows, 0, 0, 0}) &&
-           write_part(file.get(), "time", {written_, rows, 0, 0, 0}, times_) &&
-           write_checksum(file.get(), "time", time_checksum_);
-    for (const Column &column : columns_) fine = fine && write_checksum(file.get(), column.name, column.checksum);
+    fine = fine && time_.resize(file.get(), written_ + rows, 1) && time_.write(file.get(), written_, 0, 1, times_) &&
+           time_.write_checksum(file.get());
+    for (const GrowingDataset &column : columns_) fine = fine && column.write_checksum(file.get());
     if (!fine) std::filesystem::resize_file(target, 0, error);  // gives its space back, as HDF5 needs some to close it
     if (!file.close() || !fine) problem = path_ + ": cannot be written (disk full?)";
     if (problem.empty())

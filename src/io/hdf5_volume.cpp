@@ -26,17 +26,17 @@ public:
 
 protected:
   std::string read_values(const Int3 &begin, const Int3 &end, double *values) override {
-    const hsize_t first[3] = {hsize_t(begin[2]), hsize_t(begin[1]), hsize_t(begin[0])};
-    const hsize_t count[3] = {hsize_t(end[2] - begin[2]), hsize_t(end[1] - begin[1]), hsize_t(end[0] - begin[0])};
-    const int skip = 3 - rank_;  // a plane has no z
-    const Hdf5Space space(H5Dget_space(input_.dataset.get())), memory(H5Screate_simple(rank_, count + skip, nullptr));
-    const std::size_t n = count[0] * count[1] * count[2];
+    Hdf5Block block{rank_, {}, {}};
+    std::size_t n = 1;
+    for (int d = 0; d < rank_; ++d) {
+      block.begin[rank_ - 1 - d] = hsize_t(begin[d]);
+      block.count[rank_ - 1 - d] = hsize_t(end[d] - begin[d]);
+      n *= std::size_t(end[d] - begin[d]);
+    }
     if (mask_) bytes_.resize(n * size_);
-    const bool read =
-        H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, first + skip, nullptr, count + skip, nullptr) >= 0 &&
-        H5Dread(input_.dataset.get(), mask_ ? type_.get() : H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
-                mask_ ? static_cast<void *>(bytes_.data()) : values) >= 0;
-    if (!read) return "its values cannot be read, it is truncated or damaged";
+    void *const read = mask_ ? static_cast<void *>(bytes_.data()) : values;
+    if (!read_block(input_.dataset.get(), block, mask_ ? type_.get() : H5T_NATIVE_DOUBLE, read))
+      return "its values cannot be read, it is truncated or damaged";
     for (std::size_t v = 0; mask_ && v < n; ++v) {
       const auto voxel = bytes_.begin() + static_cast<std::ptrdiff_t>(v * size_);
       values[v] =

@@ -85,15 +85,15 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   Hdf5File file;
   ASSERT_EQ(file.open(run_communicator(), directory / "snapshot_000001.h5"), 0);
   double time, step;
-  std::vector<double> spacing, length;
+  Real3 spacing, length;
   ASSERT_EQ(file.read_attribute("/", "time", &time), 0);
   ASSERT_EQ(file.read_attribute("/", "step", &step), 0);
-  ASSERT_EQ(file.read_attribute("/", "spacing", &spacing), 0);
-  ASSERT_EQ(file.read_attribute("/", "length", &length), 0);
+  ASSERT_EQ(file.read_attribute("/", "spacing", spacing.data(), 3), 0);
+  ASSERT_EQ(file.read_attribute("/", "length", length.data(), 3), 0);
   EXPECT_EQ(time, 0.5);
   EXPECT_EQ(step, 10);
-  EXPECT_EQ(spacing, std::vector<double>(scene.domain.spacing().begin(), scene.domain.spacing().end()));
-  EXPECT_EQ(length, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(spacing, scene.domain.spacing());
+  EXPECT_EQ(length, (Real3{1, 2, 3}));
 
   const auto first_value = [&](const std::string &name, const Staggering &s) {
     read.fill(0, -1);
