@@ -13,6 +13,7 @@
 namespace eulastic {
 namespace {
 
+namespace fs = std::filesystem;
 constexpr std::size_t waiting_bytes_max = 64u << 20;
 
 // `id` and `species`: who the bodies are.
@@ -41,13 +42,29 @@ bool write_bodies(hid_t file, const BodySpecies &bodies) {
          write_text_attribute(id.get(), "checksum", checksum_text(checksum(ids.data(), ids.size(), 0)));
 }
 
-// Returns an error text, or nothing; after an error the copy is removed.
-std::string copy_file(const std::string &path, const std::string &target) {
-  std::error_code error, ignored;
-  std::filesystem::copy_file(path, target, std::filesystem::copy_options::overwrite_existing, error);
-  if (!error) return {};
-  std::filesystem::remove(target, ignored);
-  return path + ": cannot be copied (disk full? " + error.message() + ")";
+// Opens a new file beside the old one, a copy of it on request. Returns an error text, or nothing.
+std::string open_new(const std::string &path, bool copies, Hdf5FileHandle *file) {
+  const std::string target = temporary_name(path);
+  std::error_code error;
+  if (copies) fs::copy_file(path, target, fs::copy_options::overwrite_existing, error);
+  if (error) return path + ": cannot be copied (disk full? " + error.message() + ")";
+  const Hdf5Property access = hdf5_local_access();
+  *file = Hdf5FileHandle(copies ? H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get())
+                                : H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
+  if (*file) return {};
+  return copies ? path + ": is damaged, HDF5 cannot open it"
+                : path + ": cannot be created (" + std::strerror(errno) + ")";
+}
+
+// Closes the new file. It replaces the old one if `wrong` is empty, otherwise it is removed. Returns the first error.
+std::string close_new(const std::string &path, std::string wrong, Hdf5FileHandle *file) {
+  const std::string target = temporary_name(path);
+  std::error_code ignored;
+  if (!wrong.empty()) fs::resize_file(target, 0, ignored);  // gives its space back, as HDF5 needs some to close it
+  if (!file->close() && wrong.empty()) wrong = path + ": cannot be closed (disk full?)";
+  if (wrong.empty()) return replace_file(path);
+  fs::remove(target, ignored);
+  return wrong;
 }
 
 }  // namespace
@@ -66,11 +83,11 @@ BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const BodiesColumns &col
 PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::vector<BodyRecord> &owned) {
   PetscFunctionBeginUser;
   const bool fewer = all.bodies < known_.bodies;
-  std::string problem = fewer ? path_ + ": the number of bodies has become smaller" : std::string();
+  std::string problem = fewer ? path_ + ": the number of bodies must not become smaller" : std::string();
   if (problem.empty() && rank_ == 0 && written_ > 0) problem = stamp_.difference(path_);
   PetscCall(fail_together(comm_, problem));
   if (all.bodies > known_.bodies) {
-    PetscCall(write_waiting());  // ranks will own others
+    PetscCall(flush());  // ranks will own others
     known_ = all;
   }
   if (known_.bodies == 0) PetscFunctionReturn(0);
@@ -81,43 +98,35 @@ PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::v
       waiting_.insert(waiting_.end(), first, first + sizeof value / sizeof(double));
     });
   const std::size_t bytes = times_.size() * (1 + width_ * known_.bodies) * sizeof(double);
-  if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(write_waiting());
+  if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(flush());
   PetscFunctionReturn(0);
 }
 
 std::string BodiesFile::cut(std::size_t rows) {
   std::error_code error;
   if (rows == 0) {
-    std::filesystem::remove(path_, error);
+    fs::remove(path_, error);
     return error ? path_ + ": cannot be removed (" + error.message() + ")" : "";
   }
-  const std::string target = temporary_name(path_);
-  if (std::string problem = copy_file(path_, target); !problem.empty()) return problem;
-  Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, hdf5_local_access().get()));
-  bool fine = file && time_.cut(file.get(), rows);
+  Hdf5FileHandle file;
+  std::string problem = open_new(path_, true, &file);
+  bool fine = problem.empty() && time_.cut(file.get(), rows);
   for (GrowingDataset &column : columns_) fine = fine && column.cut(file.get(), rows);
-  if (!file.close() || !fine) {
-    std::filesystem::remove(target, error);
-    return path_ +
-           ": damaged, or has fewer rows than the checkpoint says; moving it away lets the restart begin a new one";
-  }
-  stored_ = unknown;
-  std::string problem = replace_file(path_);
+  if (problem.empty() && !fine) problem = path_ + ": is damaged, or has fewer rows than the checkpoint says";
+  problem = close_new(path_, problem, &file);
   stamp_.take(path_);
-  return problem;
+  return problem.empty() ? problem : problem + "; if you move the file away, the restart begins a new one";
 }
 
 PetscErrorCode BodiesFile::resume(long *rows) {
   PetscFunctionBeginUser;
   std::error_code ignored;
-  if (rank_ == 0 && !std::filesystem::exists(path_, ignored)) *rows = 0;
+  if (rank_ == 0 && !fs::exists(path_, ignored)) *rows = 0;
   PetscCallMPI(MPI_Bcast(rows, 1, MPI_LONG, 0, comm_));
   PetscCall(fail_together(comm_, rank_ == 0 ? cut(static_cast<std::size_t>(*rows)) : std::string()));
   written_ = static_cast<std::size_t>(*rows);
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode BodiesFile::flush() { return write_waiting(); }
 
 // Buffered rows of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
 PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *values) const {
@@ -161,23 +170,16 @@ bool BodiesFile::write_columns(hid_t file, int begin, int end, const std::vector
   return true;
 }
 
-PetscErrorCode BodiesFile::write_waiting() {
+PetscErrorCode BodiesFile::flush() {
   PetscFunctionBeginUser;
   if (times_.empty()) PetscFunctionReturn(0);
   EventScope scope(Event::write);
   const hsize_t rows = times_.size(), bodies = known_.bodies;
-  const std::string target = temporary_name(path_);
-  std::error_code error;
   std::string problem;
   Hdf5FileHandle file;
   bool fine = true;
   if (rank_ == 0) {
-    problem = written_ > 0 ? copy_file(path_, target) : "";
-    const Hdf5Property access = hdf5_local_access();
-    if (problem.empty())
-      file = Hdf5FileHandle(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
-                                          : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
-    if (problem.empty() && !file) problem = path_ + ": cannot be opened (" + std::strerror(errno) + ")";
+    problem = open_new(path_, written_ > 0, &file);
     fine = problem.empty() && (stored_ == bodies || write_bodies(file.get(), known_));
     for (GrowingDataset &column : columns_) fine = fine && column.resize(file.get(), written_ + rows, bodies);
   }
@@ -187,16 +189,12 @@ PetscErrorCode BodiesFile::write_waiting() {
     PetscCall(collect(begin, end, &values));
     if (rank_ == 0) fine = fine && write_columns(file.get(), begin, end, values);
   }
-  if (rank_ == 0 && problem.empty()) {
+  if (rank_ == 0) {
     fine = fine && time_.resize(file.get(), written_ + rows, 1) && time_.write(file.get(), written_, 0, 1, times_) &&
            time_.write_checksum(file.get());
     for (const GrowingDataset &column : columns_) fine = fine && column.write_checksum(file.get());
-    if (!fine) std::filesystem::resize_file(target, 0, error);  // gives its space back, as HDF5 needs some to close it
-    if (!file.close() || !fine) problem = path_ + ": cannot be written (disk full?)";
-    if (problem.empty())
-      problem = replace_file(path_);
-    else
-      std::filesystem::remove(target, error);
+    if (problem.empty() && !fine) problem = path_ + ": cannot be written (disk full?)";
+    problem = close_new(path_, problem, &file);
     stamp_.take(path_);
   }
   PetscCall(fail_together(comm_, problem));

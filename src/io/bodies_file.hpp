@@ -47,7 +47,6 @@ public:
 
 private:
   std::string cut(std::size_t rows);  ///< rank 0; empty, or what went wrong
-  PetscErrorCode write_waiting();     ///< collective
   PetscErrorCode collect(int begin, int end, std::vector<double> *values) const;
   bool write_columns(hid_t file, int begin, int end, const std::vector<double> &values);
 
@@ -60,10 +59,9 @@ private:
   std::vector<GrowingDataset> columns_;  ///< values of bodies
   int width_ = 0;                        ///< values of a body in a row
   BodiesColumns has_;
-  static constexpr std::size_t unknown = ~std::size_t(0);
   std::vector<double> times_, waiting_;  ///< rows that wait: (rows), (rows, owned bodies, width_)
   std::size_t written_ = 0;              ///< rows
-  std::size_t stored_ = unknown;         ///< bodies of the rows that are written
+  std::size_t stored_ = 0;               ///< bodies that `id` and `species` of the file name
 };
 
 }  // namespace eulastic

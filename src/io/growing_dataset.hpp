@@ -17,7 +17,6 @@ class GrowingDataset {
 public:
   GrowingDataset(const char *name, int rank, std::size_t width) : name_(name), rank_(rank), width_(width) {}
 
-  const char *name() const { return name_; }
   /// Values of a body in a row.
   std::size_t width() const { return width_; }
 
