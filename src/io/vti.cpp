@@ -138,14 +138,11 @@ private:
     return true;
   }
 
-  struct Close {
-    void operator()(std::FILE *file) const { (void)std::fclose(file); }
-  };
   Int3 cells_;
   Real3 spacing_;
   std::vector<SnapshotField> arrays_, walls_;
   Hdf5FileHandle from_;
-  std::unique_ptr<std::FILE, Close> to_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE *)> to_{nullptr, std::fclose};
 };
 
 }  // namespace
