@@ -160,6 +160,27 @@ TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
   EXPECT_EQ(list.find("000002"), std::string::npos) << list;
 }
 
+// A run that was restarted into a directory of its own begins there with a later number.
+TEST(Snapshot, TheIndexKeepsAllOfItsDirectory) {
+  const SharedDirectory directory;
+  const NumberedFields scene({5, 13, 7});
+  const Field pressure(scene.domain, 1);
+  SnapshotField field;
+  field.format.name = "pressure";
+  field.components = {pressure[0]};
+  SnapshotWriter first(scene.domain, directory / "", true), second(scene.domain, directory / "", true);
+  ASSERT_EQ(first.resume(3, false), 0);
+  for (int n = 3; n < 6; ++n) ASSERT_EQ(first.write(n, n, {field}), 0);
+  ASSERT_EQ(second.resume(5, true), 0);
+  ASSERT_EQ(second.write(5.5, 9, {field}), 0);
+  check_index(directory, 3);
+  const std::string list = text_of(directory / "snapshots.pvd");
+  for (const char *entry :
+       {"\"3\" part=\"0\" file=\"snapshot_000003.vti\"", "\"4\" part=\"0\" file=\"snapshot_000004.vti\"",
+        "\"5.5\" part=\"0\" file=\"snapshot_000005.vti\""})
+    EXPECT_NE(list.find(entry), std::string::npos) << entry;
+}
+
 TEST(Snapshot, OnePhase) { check_snapshot({5, 13, 7}, 1); }
 TEST(Snapshot, TwoPhases) { check_snapshot({5, 13, 7}, 2); }
 TEST(Snapshot, Flat) { check_snapshot({7, 13, 1}, 2); }
