@@ -80,7 +80,8 @@ PetscErrorCode CheckpointFile::open(MPI_Comm comm, const std::string &path) {
   PetscFunctionBeginUser;
   PetscCall(Hdf5File::open(comm, path));
   if (has_attribute("/", "kind")) PetscCall(read_attribute("/", "kind", &found));
-  PetscCall(check(found == kind, "not a checkpoint of this program"));
+  PetscCall(
+      check(found == kind, "is not a checkpoint of this program; accepted: a file checkpoint_NNNNNNNN.h5 of a run"));
   PetscCall(read_attribute("/", "format", &number));
   PetscCall(read_attribute("/", "version", &version_));
   PetscCall(check(number == format, "has format " + std::to_string(long(number)) + " (written by version " + version_ +
@@ -88,7 +89,7 @@ PetscErrorCode CheckpointFile::open(MPI_Comm comm, const std::string &path) {
   std::string content, expected;
   PetscCall(read_attribute("/", "content", &expected));
   PetscCall(find_content(*this, &content));
-  PetscCall(check(content == expected, "damaged (its datasets are not those it was made of)"));
+  PetscCall(check(content == expected, "is damaged: datasets or their checksums are missing or have changed"));
   PetscFunctionReturn(0);
 }
 

@@ -28,7 +28,8 @@ Hdf5Property parallel_access(MPI_Comm comm) {
 // directory would wait inside MPI-IO, and the others elsewhere.
 std::string try_to_open(const std::string &path, int flags) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) return path + ": not a regular file";
+  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    return path + " is not a file; accepted: an HDF5 file";
   const int file = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
   if (file < 0) return "cannot open " + path + ": " + std::strerror(errno);
   (void)::close(file);
@@ -65,7 +66,7 @@ PetscErrorCode Hdf5File::create(MPI_Comm comm, const std::string &path) {
   const Hdf5Property access = parallel_access(comm);
   const Deadline deadline(mpi_rank_, path);
   file_ = Hdf5FileHandle(H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
-  PetscCall(check(bool(file_), "cannot create this HDF5 file"));
+  PetscCall(check(bool(file_), "HDF5 cannot create this file"));
   PetscFunctionReturn(0);
 }
 
@@ -78,14 +79,14 @@ PetscErrorCode Hdf5File::open(MPI_Comm comm, const std::string &path) {
   const Hdf5Property access = parallel_access(comm);
   const Deadline deadline(mpi_rank_, path);
   file_ = Hdf5FileHandle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
-  PetscCall(check(bool(file_), "not an HDF5 file, or a damaged or truncated one"));
+  PetscCall(check(bool(file_), "is not an HDF5 file, or is damaged or truncated"));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Hdf5File::commit() {
   PetscFunctionBeginUser;
   // The flush syncs every rank's part, which rank 0 could not do for other nodes.
-  PetscCall(check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be completed (disk full?)"));
+  PetscCall(check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written to the end (disk full?)"));
   PetscCall(check(file_.close(), "cannot be closed (disk full?)"));
   PetscCall(fail_together(comm_, mpi_rank_ == 0 ? replace_file(path_) : std::string()));
   writing_ = false;
@@ -139,32 +140,14 @@ PetscErrorCode Hdf5File::open_dataset(const std::string &name, Hdf5Dataset *data
 // Attributes.
 
 PetscErrorCode Hdf5File::write_raw_attribute(const std::string &object, const std::string &name, hid_t type,
-                                             const Hdf5Space &space, const void *value) {
+                                             hsize_t count, const void *values) {
   PetscFunctionBeginUser;
+  const Hdf5Space space(count > 1 ? H5Screate_simple(1, &count, nullptr) : H5Screate(H5S_SCALAR));
   Hdf5Attribute attribute(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), type, space.get(), H5P_DEFAULT,
                                             H5P_DEFAULT, H5P_DEFAULT));
-  const bool written = attribute && H5Awrite(attribute.get(), type, value) >= 0;
+  const bool written = attribute && H5Awrite(attribute.get(), type, values) >= 0;
   PetscCall(check(attribute.close() && written, "cannot write attribute " + name + " of " + object));
   PetscFunctionReturn(0);
-}
-
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, const std::string &value) {
-  return write_raw_attribute(object, name, hdf5_string(value.size()).get(), Hdf5Space(H5Screate(H5S_SCALAR)),
-                             value.c_str());
-}
-
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, const Real3 &value) {
-  const hsize_t count = value.size();
-  return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate_simple(1, &count, nullptr)),
-                             value.data());
-}
-
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, double value) {
-  return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate(H5S_SCALAR)), &value);
-}
-
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, long value) {
-  return write_raw_attribute(object, name, H5T_NATIVE_LONG, Hdf5Space(H5Screate(H5S_SCALAR)), &value);
 }
 
 PetscErrorCode Hdf5File::open_attribute(const std::string &object, const std::string &name, Hdf5Attribute *attribute) {
@@ -329,7 +312,8 @@ PetscErrorCode Hdf5File::read_values(const std::string &name, hid_t dataset, con
   if (!has_attribute(name, "checksum")) PetscFunctionReturn(0);
   std::string stored;
   PetscCall(read_attribute(name, "checksum", &stored));
-  PetscCall(check(stored == checksum_text(sum), "dataset " + name + " is damaged (its checksum differs)"));
+  PetscCall(
+      check(stored == checksum_text(sum), "dataset " + name + " is damaged: its values do not have its checksum"));
   PetscFunctionReturn(0);
 }
 
@@ -365,7 +349,8 @@ PetscErrorCode Hdf5File::read_field(const Box &box, const std::string &name, con
   // In the stored type, so that the checksum sees the stored bits.
   const Hdf5Type type(H5Dget_type(dataset.get()));
   const H5T_class_t kind = H5Tget_class(type.get());
-  PetscCall(check(kind == H5T_FLOAT || kind == H5T_INTEGER, "dataset " + name + " is not numeric"));
+  PetscCall(check(kind == H5T_FLOAT || kind == H5T_INTEGER,
+                  "dataset " + name + " has no numbers; accepted: integers or floating-point numbers"));
   const Hyperslab slab = owned_box(box, extra, 1);
   if (H5Tget_size(type.get()) != 4)
     PetscCall(read_field_as<double>(name, dataset.get(), slab, field));
@@ -402,8 +387,9 @@ PetscErrorCode Hdf5File::read_records(const std::string &name, std::size_t numbe
   PetscCallMPI(MPI_Comm_size(comm_, &ranks));
   PetscCall(open_dataset(name, &dataset));
   const std::vector<hsize_t> shape = hdf5_shape(dataset.get());
-  PetscCall(check(shape.size() == 3 && shape[1] == 1 && shape[2] == numbers,
-                  "dataset " + name + " is " + shape_text(shape) + ", not records of " + std::to_string(numbers)));
+  PetscCall(
+      check(shape.size() == 3 && shape[1] == 1 && shape[2] == numbers,
+            "dataset " + name + " is " + shape_text(shape) + "; accepted: records x 1 x " + std::to_string(numbers)));
   const hsize_t begin = shape[0] * hsize_t(mpi_rank_) / hsize_t(ranks),
                 end = shape[0] * hsize_t(mpi_rank_ + 1) / hsize_t(ranks);
   PetscCall(read_values(name, dataset.get(), {{3, {begin, 0, 0}, {end - begin, 1, numbers}}, {shape[0], 1, numbers}},
@@ -420,7 +406,9 @@ PetscErrorCode Hdf5File::read_own(const std::string &name, std::vector<T> *value
   PetscCall(own_rows(mine, &begin, &all));
   PetscCall(open_dataset(name, &dataset));
   const std::vector<hsize_t> shape = hdf5_shape(dataset.get()), array{all}, records{all, 1, 1};
-  PetscCall(check(shape == array || shape == records, name + " belongs to another case"));
+  PetscCall(check(shape == array || shape == records, "dataset " + name + " belongs to another case: it is " +
+                                                          shape_text(shape) + ", this case needs " +
+                                                          std::to_string(all)));
   const int rank = static_cast<int>(shape.size());
   PetscCall(read_values(name, dataset.get(), {{rank, {begin, 0, 0}, {mine, 1, 1}}, {all, 1, 1}}, values));
   PetscFunctionReturn(0);
@@ -443,9 +431,9 @@ PetscErrorCode Hdf5File::read_array(const std::string &name, std::vector<T> *val
   PetscFunctionBeginUser;
   PetscCall(open_dataset(name, &dataset));
   const std::vector<hsize_t> shape = hdf5_shape(dataset.get());
-  PetscCall(check(shape.size() == 1, "dataset " + name + " is " + shape_text(shape) + ", not a list"));
+  PetscCall(check(shape.size() == 1, "dataset " + name + " is " + shape_text(shape) + "; accepted: a list"));
   PetscCall(check(H5Fget_filesize(file_.get(), &file_bytes) >= 0 && shape[0] <= file_bytes,
-                  "dataset " + name + " would be larger than its file"));
+                  "dataset " + name + " is damaged: it would be larger than its file"));
   const hsize_t mine = mpi_rank_ == 0 ? shape[0] : 0;
   PetscCall(read_values(name, dataset.get(), {{1, {0, 0, 0}, {mine, 1, 1}}, {shape[0], 1, 1}}, values));
   values->resize(shape[0]);

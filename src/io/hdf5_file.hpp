@@ -65,10 +65,18 @@ public:
   PetscErrorCode read_own(const std::string &name, std::vector<T> *values);
 
   /// Attributes of `object`: a dataset, a group, or "/" for the file.
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::string &value);
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const Real3 &value);
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, double value);
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, long value);
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::string &value) {
+    return write_raw_attribute(object, name, hdf5_string(value.size()).get(), 1, value.c_str());
+  }
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const Real3 &value) {
+    return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, value.size(), value.data());
+  }
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, double value) {
+    return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, 1, &value);
+  }
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, long value) {
+    return write_raw_attribute(object, name, H5T_NATIVE_LONG, 1, &value);
+  }
   PetscErrorCode read_attribute(const std::string &object, const std::string &name, std::string *value);
   /// Reads `count` numbers.
   PetscErrorCode read_attribute(const std::string &object, const std::string &name, double *values, int count = 1);
@@ -98,8 +106,8 @@ private:
   template <class T>
   PetscErrorCode read_field_as(const std::string &name, hid_t dataset, const Hyperslab &box, View field);
   PetscErrorCode own_rows(hsize_t mine, hsize_t *begin, hsize_t *all) const;
-  PetscErrorCode write_raw_attribute(const std::string &object, const std::string &name, hid_t type,
-                                     const Hdf5Space &space, const void *value);
+  PetscErrorCode write_raw_attribute(const std::string &object, const std::string &name, hid_t type, hsize_t count,
+                                     const void *values);
   PetscErrorCode open_dataset(const std::string &name, Hdf5Dataset *dataset) const;
   PetscErrorCode open_attribute(const std::string &object, const std::string &name, Hdf5Attribute *attribute);
 

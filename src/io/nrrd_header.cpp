@@ -130,7 +130,8 @@ private:
   }
 
   std::string read_place() {
-    if (has("space directions") && has("spacings")) return "has both spacings and space directions; accepted: one";
+    if (has("space directions") && has("spacings"))
+      return "has both spacings and space directions; accepted: one of them";
     if (std::string wrong = has("space directions") ? read_directions() : read_spacings(); !wrong.empty()) return wrong;
     if (!has("space origin")) return {};
     if (!read_numbers("space origin", rank_, &header_->corner, [](double x) { return std::isfinite(x); }))
@@ -216,12 +217,13 @@ std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
     const std::size_t colon = line.find(": ");
     const bool key = line.find(":=") < colon;
     if (line[0] == '#' || key || line.compare(0, 4, "NRRD") == 0) continue;
-    if (colon == std::string::npos) return file + ": header line \"" + line.substr(0, 80) + "\" is no field: value";
+    if (colon == std::string::npos)
+      return file + ": header line \"" + line.substr(0, 80) + "\" is not a field; accepted: FIELD: VALUE";
     std::string value = line.substr(colon + 2);
     value.erase(0, value.find_first_not_of(" \t"));
     value.erase(value.find_last_not_of(" \t") + 1);
     if (!fields.emplace(lower_case(line.substr(0, colon)), value).second)
-      return file + ": field " + line.substr(0, colon) + " is given twice";
+      return file + ": field " + line.substr(0, colon) + " is given twice; accepted: once";
   }
   if (header->data < 0 && !(all && is_detached(fields)))
     return file + ": the NRRD header has no end, it is truncated or damaged";

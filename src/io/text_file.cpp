@@ -70,10 +70,10 @@ void FileStamp::take(const std::string &path) {
 
 std::string FileStamp::difference(const std::string &path) const {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return path + " has vanished while the run went on";
+  if (::stat(path.c_str(), &status) != 0) return path + " was removed by another program during the run";
   if (status.st_dev == device_ && status.st_ino == file_ && status.st_size == bytes_) return {};
-  return path + " was changed by another program while the run went on: " + std::to_string(status.st_size) +
-         " bytes where this one had written " + std::to_string(bytes_);
+  return path + " was changed by another program during the run: it has " + std::to_string(status.st_size) +
+         " bytes, this run had written " + std::to_string(bytes_);
 }
 
 }  // namespace eulastic
