@@ -58,13 +58,10 @@ std::string open_new(const std::string &path, bool copies, Hdf5FileHandle *file)
 
 // Closes the new file. It replaces the old one if `wrong` is empty, otherwise it is removed. Returns the first error.
 std::string close_new(const std::string &path, std::string wrong, Hdf5FileHandle *file) {
-  const std::string target = temporary_name(path);
-  std::error_code ignored;
-  if (!wrong.empty()) fs::resize_file(target, 0, ignored);  // gives its space back, as HDF5 needs some to close it
+  std::error_code ignored;  // an unfinished file gives its space back, as HDF5 needs some to close it
+  if (!wrong.empty()) fs::resize_file(temporary_name(path), 0, ignored);
   if (!file->close() && wrong.empty()) wrong = path + ": cannot be closed (disk full?)";
-  if (wrong.empty()) return replace_file(path);
-  fs::remove(target, ignored);
-  return wrong;
+  return replace_file(path, wrong);
 }
 
 }  // namespace

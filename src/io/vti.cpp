@@ -3,7 +3,6 @@
 #include "io/fail_together.hpp"
 #include "io/text_file.hpp"
 
-#include <unistd.h>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -42,10 +41,8 @@ public:
     bool written = write(head(time));
     for (const SnapshotField &array : arrays_) written = written && write_array(array);
     written = written && write("\n  </AppendedData>\n</VTKFile>\n");
-    const int reason = errno;
-    if (std::fclose(to_.release()) == 0 && written) return replace_file(to);
-    ::unlink(temporary_name(to).c_str());
-    return "cannot write " + to + ": " + std::strerror(reason);
+    const bool closed = std::fclose(to_.release()) == 0;
+    return replace_file(to, closed && written ? "" : "cannot write " + to + ": " + std::strerror(errno));
   }
 
 private:
