@@ -253,8 +253,7 @@ PetscErrorCode Hdf5File::write_values(const std::string &name, const Hyperslab &
   const haddr_t offset = H5Dget_offset(dataset.get());
   const hsize_t bytes = H5Dget_storage_size(dataset.get());
   PetscCall(fail_together(comm_, mpi_rank_ == 0 ? reserve(temporary_name(path_), offset, bytes) : std::string()));
-  const Hdf5Property transfer = hdf5_collective();
-  const bool written = write_block(dataset.get(), slab, hdf5_type<T>(), values.data(), transfer.get());
+  const bool written = write_block(dataset.get(), slab, hdf5_type<T>(), values.data(), hdf5_collective().get());
   PetscCall(check(dataset.close() && written, "cannot write dataset " + name + " (disk full?)"));
   std::uint64_t sum = box_checksum(slab, values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));
@@ -303,9 +302,8 @@ template <class T>
 PetscErrorCode Hdf5File::read_values(const std::string &name, hid_t dataset, const Hyperslab &slab,
                                      std::vector<T> *values) {
   PetscFunctionBeginUser;
-  const Hdf5Property transfer = hdf5_collective();
   values->resize(slab.count[0] * slab.count[1] * slab.count[2]);
-  const bool read = read_block(dataset, slab, hdf5_type<T>(), values->data(), transfer.get());
+  const bool read = read_block(dataset, slab, hdf5_type<T>(), values->data(), hdf5_collective().get());
   PetscCall(check(read, "cannot read dataset " + name));
   std::uint64_t sum = box_checksum(slab, *values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));

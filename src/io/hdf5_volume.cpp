@@ -68,7 +68,7 @@ private:
     if (!filters_are_there(creation.get()))
       return refuse("is compressed by a filter that this HDF5 lacks; accepted: gzip, or no compression");
     const double stored = double(H5Dget_storage_size(input_.dataset.get()));
-    if (stored == 0) return refuse("is empty; accepted: a dataset with values");
+    if (stored == 0) return refuse("has no values; accepted: one value per voxel");
     hsize_t chunk[3] = {1, 1, 1};
     if (chunked) (void)H5Pget_chunk(creation.get(), rank_, chunk);
     const double chunk_bytes = double(chunk[0]) * double(chunk[1]) * double(chunk[2]) * double(size_);
