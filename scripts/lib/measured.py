@@ -23,12 +23,22 @@ def machine():
     return f"{os.cpu_count()} cores of {name[1] if name else 'an unknown processor'}{wide}"
 
 
+TEXT_OR_COMMENT = re.compile(r''''(?:\\.|[^'\\\n])'|R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*(?:.|\n)*?\*/''')
+
+
+def code_of(text):
+    """C++ code without its comments and with single blanks; literal texts are kept."""
+    code = TEXT_OR_COMMENT.sub(lambda found: " " if found[0].startswith("/") else found[0], text)
+    return " ".join(code.split())
+
+
 def sources(folder=None):
-    """A short hash of all files below `folder`, src/ if it is None: which program made a number, whatever docs and scripts were."""
+    """A short hash of the code in all files below `folder`, src/ if it is None: which program made a number, whatever docs,
+    scripts and comments were."""
     folder = pathlib.Path(folder or ROOT / "src")
     digest = hashlib.sha256()
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
-        digest.update(f"{path.relative_to(folder)}\0{path.stat().st_size}\0".encode() + path.read_bytes())
+        digest.update(f"{path.relative_to(folder)}\0{code_of(path.read_text())}\0".encode())
     return digest.hexdigest()[:8]
 
 

@@ -338,7 +338,7 @@ PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousSt
   if (size.residual > enough)
     SETERRQ(domain_->comm(), PETSC_ERR_NOT_CONVERGED,
             "the implicit viscous step did not converge in %d iterations (residual %.3g of the right-hand side); "
-            "accepted: a larger -viscous_tolerance (now %g) or -viscous_scheme explicit",
+            "accepted: a larger -viscous_tolerance (now %g) or -viscous_scheme rkl",
             most_iterations, std::sqrt(size.residual / size.right_side), tolerance_);
   PetscFunctionReturn(0);
 }

@@ -47,7 +47,7 @@ std::string summary_text(const Summary &s) {
       .add("active_fraction", s.active_fraction)
       .add("acm_sweeps_per_step", s.acm_sweeps_per_step)
       .add("ksp_iterations_per_step", s.ksp_iterations_per_step)
-      .add("rkl_stages_per_step", s.rkl_stages_per_step)
+      .add("viscous_stages_per_step", s.viscous_stages_per_step)
       .add("strain_forgotten", s.strain_forgotten)
       .add("divergence_rms", s.divergence_rms)
       .add("divergence_max", s.divergence_max)

@@ -19,7 +19,7 @@ struct Summary {
   double wall_seconds = 0;  ///< time loop without output
   double wall_seconds_total = 0;
   double bytes_per_cell = 0, active_fraction = 1;
-  double acm_sweeps_per_step = 0, ksp_iterations_per_step = 0, rkl_stages_per_step = 0;
+  double acm_sweeps_per_step = 0, ksp_iterations_per_step = 0, viscous_stages_per_step = 0;
   long strain_forgotten = 0;
   double divergence_rms = 0, divergence_max = 0, mach_max = 0, volume_drift = 0;
   double kinetic_energy = 0, elastic_energy = 0, bulk_velocity = 0;

@@ -96,9 +96,9 @@ void add_method(Rows &rows, Config &config) {
   rows.choice("method", method.kind, method_names,
               "fast: second order in time, with bodies at half steps; classic: the scheme of the original paper");
   const std::size_t parts = rows.rows.size();
-  rows.choice("viscous_scheme", method.viscous, {"rkl", "explicit"},
-              "super time stepping RKL2 (where viscosities differ an implicit step, docs/method.md, section 16), or "
-              "one explicit stage");
+  rows.choice("viscous_scheme", method.viscous, {"auto", "rkl", "explicit"},
+              "rkl: super time stepping RKL2; explicit: a single stage; auto: rkl, but an implicit step where "
+              "viscosities differ and no body is rigid");
   rows.real("viscous_tolerance", method.viscous_tolerance, positive, "",
             "iterate the implicit viscous step until its residual is below this share of the right-hand side");
   rows.choice("interface_scheme", method.interface, {"plic", "weno5"},

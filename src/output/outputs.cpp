@@ -206,7 +206,7 @@ PetscErrorCode Outputs::write_summary(Summary summary) {
   summary.time = state.time;
   summary.dt_mean = state.step > 0 ? state.time / double(state.step) : 0;
   if (state.step > 0) {
-    summary.rkl_stages_per_step = double(solver_->stages()) / double(state.step);
+    summary.viscous_stages_per_step = double(solver_->stages()) / double(state.step);
     const double sweeps = double(solver_->sweeps()) / double(state.step);
     (config_.method.pressure == PressureKind::ksp ? summary.ksp_iterations_per_step : summary.acm_sweeps_per_step) =
         sweeps;

@@ -4,7 +4,7 @@
 namespace eulastic {
 
 enum class MethodKind { fast, classic };
-enum class ViscousScheme { rkl, explicit_euler };
+enum class ViscousScheme { automatic, rkl, explicit_euler };
 enum class InterfaceScheme { plic, weno5 };
 enum class SolidExterior { extrapolate, identity };
 enum class ElasticForce { linear, constant };
@@ -26,6 +26,12 @@ struct Method {
 
   /// Whether bodies and pressure are half a step apart from the velocity.
   bool staggered() const { return kind == MethodKind::fast; }
+  /// Whether the viscosity limits the time step.
+  bool explicit_viscosity() const { return viscous == ViscousScheme::explicit_euler; }
+  /// Whether the viscous step is implicit in a scene, else it has RKL2's stages or a single one.
+  bool implicit_viscosity(bool viscosities_differ, bool rigid_bodies) const {
+    return viscous == ViscousScheme::automatic && viscosities_differ && !rigid_bodies;
+  }
   bool linear_force() const { return staggered() && elastic_force == ElasticForce::linear; }
   /// Whether free bodies may be stored in boxes of their own (boxes/free_bodies.hpp).
   bool allows_boxed_bodies() const { return staggered() && interface == InterfaceScheme::plic; }
@@ -38,7 +44,7 @@ inline Method method_preset(MethodKind kind) {
   Method method;
   if (kind == MethodKind::classic) return method;
   method.kind = MethodKind::fast;
-  method.viscous = ViscousScheme::rkl;
+  method.viscous = ViscousScheme::automatic;
   method.interface = InterfaceScheme::plic;
   method.exterior = SolidExterior::extrapolate;
   method.elastic_force = ElasticForce::linear;

@@ -161,7 +161,7 @@ public:
     }
     const TimeStepLimits limits =
         time_step_limits(spacing_, dimension_, config_.fluid, contrast, config_.sides, extremes,
-                         {config_.method.staggered(), config_.method.viscous == ViscousScheme::rkl});
+                         {config_.method.staggered(), !config_.method.explicit_viscosity()});
     report.limit("viscous", limits.viscous);
     report.limit("elastic wave", limits.elastic);
     report.limit("viscous and elastic", limits.combined);
@@ -200,11 +200,11 @@ private:
     const Int3 &n = config_.grid.cells;
     const double phases = double(config_.species.size());
     double ns = 45 + 85 * phases;
-    if (config_.method.viscous == ViscousScheme::rkl) {
+    if (!config_.method.explicit_viscosity()) {
       const double stages = rkl_stages(viscous, 1);
       ns = 70 + 8 * stages + (phases > 0 ? 10 * stages : 0) + 250 * phases;
       if (contrast) ns += 40 + 6 * stages;
-      if (contrast && !has_rigid_bodies()) ns = 1700 + 250 * phases;  // the implicit viscous step
+      if (config_.method.implicit_viscosity(contrast, has_rigid_bodies())) ns = 1700 + 250 * phases;
     }
     const int cores = ranks * config_.threads;
     const double seconds = 1e-9 * ns * n[0] * n[1] * n[2] * steps / cores;

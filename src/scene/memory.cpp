@@ -101,7 +101,7 @@ double fields(const Config &config) {
   ViscosityContrast contrast(config.fluid);
   for (const SpeciesSpec &spec : config.species) contrast.add(spec.material(), 0);
   if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
-  if (contrast.exists() && !rigid && method.viscous == ViscousScheme::rkl)  // ImplicitViscosity
+  if (method.implicit_viscosity(contrast.exists(), rigid))  // ImplicitViscosity
     sum += 5 * dimension + 3 + (dimension == 2 ? 1 : 0.4);
   if (Scheme::extrapolates_pressure(method, contrast, travels)) sum += 1;  // pressure before
   return sum;

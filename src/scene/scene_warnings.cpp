@@ -29,7 +29,7 @@ void add_attachment_warnings(const Config &config, std::vector<std::string> *war
 
 // Of a drop: docs/method.md, section 16, "Pressure".
 void add_lag_warnings(const Config &config, std::vector<std::string> *warnings) {
-  if (!config.method.staggered() || config.method.viscous != ViscousScheme::rkl) return;
+  if (!config.method.staggered() || config.method.explicit_viscosity()) return;
   ViscosityContrast all(config.fluid);
   for (const SpeciesSpec &spec : config.species) all.add(spec.material(), 0);
   for (const SpeciesSpec &spec : config.species) {

@@ -22,7 +22,7 @@ PetscErrorCode FastStep::start() {
   const int dim = flow_.domain.dimension();
   PetscFunctionBeginUser;
   PetscCall(Scheme::start());
-  if (viscosity_ && !flow_.rigid && flow_.spec.viscous == ViscousScheme::rkl) {
+  if (flow_.spec.implicit_viscosity(bool(viscosity_), flow_.rigid)) {
     const ViscosityContrast range = contrast({});
     implicit_ = std::make_unique<ImplicitViscosity>();
     PetscCall(implicit_->create(flow_.domain, flow_.spec.sides, range.least / flow_.fluid.density,
@@ -118,7 +118,7 @@ PetscErrorCode FastStep::advance_viscous_stages(const Fluid &fluid, const Moment
   PetscCall(add_local_viscous_force(1, rate.fields()));
   PetscCall(flow_.work.lease("viscous stage before", dim, &before));
   SuperTimeStepping viscous{rate.part(0, dim), {}, flow_.velocity_star.part(0, dim), before.part(0, dim)};
-  const int stages = flow_.spec.viscous == ViscousScheme::rkl ? rkl_stages(step.dt, limits(FlowExtremes{}).viscous) : 1;
+  const int stages = flow_.spec.explicit_viscosity() ? 1 : rkl_stages(step.dt, limits(FlowExtremes{}).viscous);
   ViscousStep viscous_step{sides,
                            now.time,
                            step.dt,

@@ -15,7 +15,7 @@ int Scheme::work_fields(const Method &method, int dimension, int forces) {
 }
 
 bool Scheme::extrapolates_pressure(const Method &method, const ViscosityContrast &contrast, bool travel) {
-  return method.staggered() && method.viscous == ViscousScheme::rkl &&
+  return method.staggered() && !method.explicit_viscosity() &&
          (contrast.exists() ? contrast.allows_pressure_extrapolation() : travel);
 }
 
@@ -42,7 +42,7 @@ ViscosityContrast Scheme::contrast(const std::vector<double> &trace) const {
 TimeStepLimits Scheme::limits(const FlowExtremes &extremes) const {
   TimeStepLimits limits =
       time_step_limits(flow_.domain, flow_.driven_fluid(), contrast(extremes.trace), flow_.spec.sides, extremes,
-                       {flow_.staggered(), flow_.spec.viscous == ViscousScheme::rkl});
+                       {flow_.staggered(), !flow_.spec.explicit_viscosity()});
   for (const FlowPart *part : flow_.parts) {
     limits.forcing = std::min(limits.forcing, part->shortest_period());
     limits.bonds = std::min(limits.bonds, part->largest_step());

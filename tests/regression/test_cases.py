@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Every case of options/ for a few steps, coarse and with both methods: it ends well, leaves its files, all of them
 finite, and gives the same results on three ranks. Cases whose start or first moments are exact are compared."""
-import json
 import math
 import os
 import pathlib

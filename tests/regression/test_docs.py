@@ -251,6 +251,7 @@ class Docs(unittest.TestCase):
         self.assertIn("evidence: grid is up to date\nevidence: 1 of 1 steps are of these sources", says())
         self.assertIn("evidence: grid, about", says("--again"))
         (self.room / "docs/grid.md").write_text("A page is no source.\n")
+        (self.room / "src/solver.cpp").write_text("int one;  // nor is a comment\n")
         self.assertIn("up to date: ", says("--list"))
         (self.room / "src/solver.cpp").write_text("int two;\n")
         self.assertIn("older: ", says("--list"))

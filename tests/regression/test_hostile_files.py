@@ -6,7 +6,6 @@ Needs EULASTIC and EULASTIC_MPIEXEC.
 """
 import os
 import pathlib
-import re
 import sys
 import unittest
 

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """-initial_state and probes: a run from a snapshot goes on, files by hand arrive where they should, wrong ones are
 refused with what is wrong; B = I with any phi is the pure fluid; refusals of grids."""
-import os
 import pathlib
 import subprocess
 import sys

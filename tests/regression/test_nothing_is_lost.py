@@ -6,7 +6,6 @@ Needs EULASTIC, EULASTIC_RUN_MANY and EULASTIC_MPIEXEC.
 import fcntl
 import hashlib
 import json
-import os
 import pathlib
 import resource
 import shutil

@@ -92,7 +92,7 @@ def scene(dice):
     if method == "fast":
         sometimes += ((0.2, ("-interface_scheme", dice.choice(("plic", "weno5")))),
                       (0.2, ("-solid_exterior", dice.choice(("extrapolate", "identity")))),
-                      (0.15, ("-viscous_scheme", dice.choice(("rkl", "explicit")))))
+                      (0.15, ("-viscous_scheme", dice.choice(("auto", "rkl", "explicit")))))
     for chance, option in sometimes:
         if dice.random() < chance:
             words += option

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """scripts/studies/paper/paper_section5: its measures against closed formulas and published numbers, and all of it on a small vessel."""
-import os
 import pathlib
 import re
 import subprocess

@@ -2,7 +2,6 @@
 
 Needs EULASTIC=path of the binary, for run_together EULASTIC_RUN_MANY and, for more ranks than one, EULASTIC_MPIEXEC.
 """
-import os
 import pathlib
 import subprocess
 import sys

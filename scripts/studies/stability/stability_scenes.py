@@ -80,7 +80,6 @@ def thin(kind, G):
 
 def contact(kind, G):
     """Bodies that touch walls, each other, or everything."""
-    push = dict(body_force="0,-2,0")
     fixed = box(32, "xy", boundary_ymax_velocity=UP)
     random = box(32, "", initial_velocity="random")
     return {

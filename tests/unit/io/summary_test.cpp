@@ -136,7 +136,7 @@ TEST(Summary, HasEveryKey) {
                                           "active_fraction",
                                           "acm_sweeps_per_step",
                                           "ksp_iterations_per_step",
-                                          "rkl_stages_per_step",
+                                          "viscous_stages_per_step",
                                           "strain_forgotten",
                                           "divergence_rms",
                                           "divergence_max",
