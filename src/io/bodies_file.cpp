@@ -4,7 +4,6 @@
 #include "base/events.hpp"
 #include "io/checksum.hpp"
 #include "io/fail_together.hpp"
-#include "io/growing_datasets.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -14,14 +13,8 @@
 namespace eulastic {
 namespace {
 
+namespace fs = std::filesystem;
 constexpr std::size_t waiting_bytes_max = 64u << 20;
-
-// The directory is locked, and not all file systems can.
-Hdf5Property unlocked_access() {
-  Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
-  (void)H5Pset_file_locking(access.get(), false, true);
-  return access;
-}
 
 // `id` and `species`: who the bodies are.
 bool write_bodies(hid_t file, const BodySpecies &bodies) {
@@ -49,13 +42,26 @@ bool write_bodies(hid_t file, const BodySpecies &bodies) {
          write_text_attribute(id.get(), "checksum", checksum_text(checksum(ids.data(), ids.size(), 0)));
 }
 
-// Returns an error text, or nothing; after an error the copy is removed.
-std::string copy_file(const std::string &path, const std::string &target) {
-  std::error_code error, ignored;
-  std::filesystem::copy_file(path, target, std::filesystem::copy_options::overwrite_existing, error);
-  if (!error) return {};
-  std::filesystem::remove(target, ignored);
-  return path + ": cannot be copied (disk full? " + error.message() + ")";
+// Opens a new file beside the old one, a copy of it on request. Returns an error text, or nothing.
+std::string open_new(const std::string &path, bool copies, Hdf5FileHandle *file) {
+  const std::string target = temporary_name(path);
+  std::error_code error;
+  if (copies) fs::copy_file(path, target, fs::copy_options::overwrite_existing, error);
+  if (error) return path + ": cannot be copied (disk full? " + error.message() + ")";
+  const Hdf5Property access = hdf5_local_access();
+  *file = Hdf5FileHandle(copies ? H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get())
+                                : H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
+  if (*file) return {};
+  return copies ? path + ": is damaged, HDF5 cannot open it"
+                : path + ": cannot be created (" + std::strerror(errno) + ")";
+}
+
+// Closes the new file. It replaces the old one if `wrong` is empty, otherwise it is removed. Returns the first error.
+std::string close_new(const std::string &path, std::string wrong, Hdf5FileHandle *file) {
+  std::error_code ignored;  // an unfinished file gives its space back, as HDF5 needs some to close it
+  if (!wrong.empty()) fs::resize_file(temporary_name(path), 0, ignored);
+  if (!file->close() && wrong.empty()) wrong = path + ": cannot be closed (disk full?)";
+  return replace_file(path, wrong);
 }
 
 }  // namespace
@@ -63,7 +69,7 @@ std::string copy_file(const std::string &path, const std::string &target) {
 BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const std::vector<BodyColumn> &columns)
     : comm_(comm), path_(std::move(path)) {
   for (const BodyColumn &column : columns) {
-    columns_.push_back({column.name, column.width, 0});
+    columns_.emplace_back(column.name, column.width > 1 ? 3 : 2, column.width);
     width_ += column.width;
   }
   (void)MPI_Comm_rank(comm, &rank_);
@@ -73,56 +79,46 @@ BodiesFile::BodiesFile(MPI_Comm comm, std::string path, const std::vector<BodyCo
 PetscErrorCode BodiesFile::add(double time, const BodySpecies &all, const std::vector<double> &owned) {
   PetscFunctionBeginUser;
   const bool fewer = all.bodies < known_.bodies;
-  std::string problem = fewer ? path_ + ": the number of bodies has become smaller" : std::string();
+  std::string problem = fewer ? path_ + ": the number of bodies must not become smaller" : std::string();
   if (problem.empty() && rank_ == 0 && written_ > 0) problem = stamp_.difference(path_);
   PetscCall(fail_together(comm_, problem));
   if (all.bodies > known_.bodies) {
-    PetscCall(write_waiting());  // ranks will own others
+    PetscCall(flush());  // ranks will own others
     known_ = all;
   }
   if (known_.bodies == 0) PetscFunctionReturn(0);
   times_.push_back(time);
   waiting_.insert(waiting_.end(), owned.begin(), owned.end());
   const std::size_t bytes = times_.size() * (1 + width_ * known_.bodies) * sizeof(double);
-  if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(write_waiting());
+  if (4 * times_.size() >= written_ || bytes >= waiting_bytes_max) PetscCall(flush());
   PetscFunctionReturn(0);
 }
 
 std::string BodiesFile::cut(std::size_t rows) {
   std::error_code error;
   if (rows == 0) {
-    std::filesystem::remove(path_, error);
+    fs::remove(path_, error);
     return error ? path_ + ": cannot be removed (" + error.message() + ")" : "";
   }
-  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const std::string target = temporary_name(path_);
-  if (std::string problem = copy_file(path_, target); !problem.empty()) return problem;
-  Hdf5FileHandle file(H5Fopen(target.c_str(), H5F_ACC_RDWR, unlocked_access().get()));
-  bool fine = bool(file);
-  fine = fine && cut_rows(file.get(), "time", rows, &time_checksum_);
-  for (Column &column : columns_) fine = fine && cut_rows(file.get(), column.name, rows, &column.checksum);
-  if (!file.close() || !fine) {
-    std::filesystem::remove(target, error);
-    return path_ +
-           ": damaged, or has fewer rows than the checkpoint says; moving it away lets the restart begin a new one";
-  }
-  stored_ = unknown;
-  std::string problem = replace_file(path_);
+  Hdf5FileHandle file;
+  std::string problem = open_new(path_, true, &file);
+  bool fine = problem.empty() && time_.cut(file.get(), rows);
+  for (GrowingDataset &column : columns_) fine = fine && column.cut(file.get(), rows);
+  if (problem.empty() && !fine) problem = path_ + ": is damaged, or has fewer rows than the checkpoint says";
+  problem = close_new(path_, problem, &file);
   stamp_.take(path_);
-  return problem;
+  return problem.empty() ? problem : problem + "; if you move the file away, the restart begins a new one";
 }
 
 PetscErrorCode BodiesFile::resume(long *rows) {
   PetscFunctionBeginUser;
   std::error_code ignored;
-  if (rank_ == 0 && !std::filesystem::exists(path_, ignored)) *rows = 0;
+  if (rank_ == 0 && !fs::exists(path_, ignored)) *rows = 0;
   PetscCallMPI(MPI_Bcast(rows, 1, MPI_LONG, 0, comm_));
   PetscCall(fail_together(comm_, rank_ == 0 ? cut(static_cast<std::size_t>(*rows)) : std::string()));
   written_ = static_cast<std::size_t>(*rows);
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode BodiesFile::flush() { return write_waiting(); }
 
 // Buffered rows of bodies [begin, end), in their order on rank 0: (bodies, rows, width).
 PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *values) const {
@@ -149,69 +145,48 @@ PetscErrorCode BodiesFile::collect(int begin, int end, std::vector<double> *valu
   PetscFunctionReturn(0);
 }
 
-// Of bodies [begin, end), as collected.
-bool BodiesFile::write_block(hid_t file, int begin, int end, const std::vector<double> &values) {
-  const std::size_t rows = times_.size(), bodies = static_cast<std::size_t>(end - begin), all = known_.bodies;
+// Writes the values of bodies [begin, end) that collect() has found.
+bool BodiesFile::write_columns(hid_t file, int begin, int end, const std::vector<double> &values) {
+  const std::size_t rows = times_.size(), bodies = static_cast<std::size_t>(end - begin);
   std::size_t first = 0;  // of the column
-  for (Column &column : columns_) {
-    const auto width = static_cast<std::size_t>(column.width);
-    std::vector<double> part(rows * bodies * width);
-    for (std::size_t row = 0; row < rows; ++row) {
-      double *const to = part.data() + row * bodies * width;
-      for (std::size_t b = 0; b < bodies; ++b)
-        std::copy_n(values.data() + (b * rows + row) * width_ + first, width, to + b * width);
-      column.checksum += checksum(to, bodies * width, ((written_ + row) * all + begin) * width);
-    }
-    if (!write_part(file, column.name, {written_, rows, static_cast<hsize_t>(begin), bodies, width}, part))
-      return false;
-    first += width;
+  for (GrowingDataset &column : columns_) {
+    std::vector<double> part;
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t b = 0; b < bodies; ++b) {
+        const double *from = values.data() + (b * rows + row) * width_ + first;
+        part.insert(part.end(), from, from + column.width());
+      }
+    if (!column.write(file, written_, begin, bodies, part)) return false;
+    first += column.width();
   }
   return true;
 }
 
-PetscErrorCode BodiesFile::write_waiting() {
+PetscErrorCode BodiesFile::flush() {
   PetscFunctionBeginUser;
   if (times_.empty()) PetscFunctionReturn(0);
   EventScope scope(Event::write);
   const hsize_t rows = times_.size(), bodies = known_.bodies;
-  const std::string target = temporary_name(path_);
-  std::error_code error;
   std::string problem;
   Hdf5FileHandle file;
   bool fine = true;
   if (rank_ == 0) {
-    (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    problem = written_ > 0 ? copy_file(path_, target) : "";
-    const Hdf5Property access = unlocked_access();
-    if (problem.empty())
-      file = Hdf5FileHandle(written_ == 0 ? H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())
-                                          : H5Fopen(target.c_str(), H5F_ACC_RDWR, access.get()));
-    if (problem.empty() && !file) problem = path_ + ": cannot be opened (" + std::strerror(errno) + ")";
+    problem = open_new(path_, written_ > 0, &file);
     fine = problem.empty() && (stored_ == bodies || write_bodies(file.get(), known_));
-    for (Column &column : columns_) {
-      if (written_ > 0 && stored_ != bodies)
-        fine = fine && set_bodies(file.get(), column.name, bodies, &column.checksum);
-      fine = fine && set_rows(file.get(), column.name, {written_, rows, 0, bodies, static_cast<hsize_t>(column.width)});
-    }
+    for (GrowingDataset &column : columns_) fine = fine && column.resize(file.get(), written_ + rows, bodies);
   }
   std::vector<double> values;
   for (int begin = 0; begin < static_cast<int>(bodies); begin += BodyRange::piece) {
     const int end = std::min(begin + BodyRange::piece, static_cast<int>(bodies));
     PetscCall(collect(begin, end, &values));
-    if (rank_ == 0) fine = fine && write_block(file.get(), begin, end, values);
+    if (rank_ == 0) fine = fine && write_columns(file.get(), begin, end, values);
   }
-  if (rank_ == 0 && problem.empty()) {
-    time_checksum_ += checksum(times_.data(), rows, written_);
-    fine = fine && set_rows(file.get(), "time", {written_, rows, 0, 0, 0}) &&
-           write_part(file.get(), "time", {written_, rows, 0, 0, 0}, times_) &&
-           write_checksum(file.get(), "time", time_checksum_);
-    for (const Column &column : columns_) fine = fine && write_checksum(file.get(), column.name, column.checksum);
-    if (!fine) std::filesystem::resize_file(target, 0, error);  // gives its space back, as HDF5 needs some to close it
-    if (!file.close() || !fine) problem = path_ + ": cannot be written (disk full?)";
-    if (problem.empty())
-      problem = replace_file(path_);
-    else
-      std::filesystem::remove(target, error);
+  if (rank_ == 0) {
+    fine = fine && time_.resize(file.get(), written_ + rows, 1) && time_.write(file.get(), written_, 0, 1, times_) &&
+           time_.write_checksum(file.get());
+    for (const GrowingDataset &column : columns_) fine = fine && column.write_checksum(file.get());
+    if (problem.empty() && !fine) problem = path_ + ": cannot be written (disk full?)";
+    problem = close_new(path_, problem, &file);
     stamp_.take(path_);
   }
   PetscCall(fail_together(comm_, problem));

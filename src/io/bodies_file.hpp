@@ -8,10 +8,9 @@
 #pragma once
 
 #include "base/petsc.hpp"
-#include "io/hdf5_handle.hpp"
+#include "io/growing_dataset.hpp"
 #include "io/text_file.hpp"
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -46,28 +45,21 @@ public:
   PetscErrorCode resume(long *rows);
 
 private:
-  struct Column {
-    const char *name;
-    int width;  ///< values per body
-    std::uint64_t checksum;
-  };
   std::string cut(std::size_t rows);  ///< rank 0; empty, or what went wrong
-  PetscErrorCode write_waiting();     ///< collective
   PetscErrorCode collect(int begin, int end, std::vector<double> *values) const;
-  bool write_block(hid_t file, int begin, int end, const std::vector<double> &values);
+  bool write_columns(hid_t file, int begin, int end, const std::vector<double> &values);
 
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
   std::string path_;
   FileStamp stamp_;    ///< of the file as rank 0 has written it
   BodySpecies known_;  ///< who the bodies are
-  std::vector<Column> columns_;
-  int width_ = 0;  ///< values of a body in a row
-  static constexpr std::size_t unknown = ~std::size_t(0);
+  GrowingDataset time_{"time", 1, 1};
+  std::vector<GrowingDataset> columns_;  ///< values of bodies
+  int width_ = 0;                        ///< values of a body in a row
   std::vector<double> times_, waiting_;  ///< rows that wait: (rows), (rows, owned bodies, width_)
-  std::uint64_t time_checksum_ = 0;
-  std::size_t written_ = 0;       ///< rows
-  std::size_t stored_ = unknown;  ///< bodies of the rows that are written
+  std::size_t written_ = 0;              ///< rows
+  std::size_t stored_ = 0;               ///< bodies that `id` and `species` of the file name
 };
 
 }  // namespace eulastic

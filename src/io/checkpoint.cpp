@@ -3,7 +3,6 @@
 #include "base/events.hpp"
 #include "base/one_line.hpp"
 #include "io/checksum.hpp"
-#include "io/fail_together.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -15,18 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char *kind = "eulastic checkpoint";
 constexpr long format = 5;  // raised whenever a file means something else
-
-// Those of rank 0, which alone knows all bodies.
-template <class T>
-PetscErrorCode write_all(MPI_Comm comm, Hdf5File &file, const std::map<std::string, std::vector<T>> &arrays) {
-  PetscFunctionBeginUser;
-  for (const auto &[name, values] : arrays) {
-    hsize_t count = values.size();
-    PetscCallMPI(MPI_Bcast(&count, 1, MPI_UINT64_T, 0, comm));
-    PetscCall(file.write_array(name, {count}, values));
-  }
-  PetscFunctionReturn(0);
-}
 
 // The attribute `content` of a file: which datasets it has, and which checksums.
 PetscErrorCode find_content(Hdf5File &file, std::string *content) {
@@ -74,16 +61,12 @@ PetscErrorCode write_checkpoint(const Domain &domain, const std::string &path, c
   PetscCall(file.write_attribute("/", "format", format));
   PetscCall(file.write_attribute("/", "version", std::string(EULASTIC_VERSION)));
   const std::vector<unsigned char> text(options.begin(), options.end());
-  PetscCall(file.write_array("options", {hsize_t(text.size())}, text));
-  PetscCall(write_all(domain.comm(), file, numbers.reals));
-  PetscCall(write_all(domain.comm(), file, numbers.integers));
+  PetscCall(file.write_array("options", text));
+  for (const auto &[name, values] : numbers.reals) PetscCall(file.write_array(name, values));
+  for (const auto &[name, values] : numbers.integers) PetscCall(file.write_array(name, values));
   for (const CheckpointField &field : fields)
     PetscCall(file.write_field(domain, {field.name, field.staggering, field.stored, true}, {field.view}));
-  for (const CheckpointRecords &some : records) {
-    int any = some.values.empty() ? 0 : 1;
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, domain.comm()));
-    if (any > 0) PetscCall(file.write_records(some.name, some.numbers, some.values));
-  }
+  for (const CheckpointRecords &some : records) PetscCall(file.write_records(some.name, some.numbers, some.values));
   std::string content;
   PetscCall(find_content(file, &content));
   PetscCall(file.write_attribute("/", "content", content));
@@ -95,85 +78,47 @@ PetscErrorCode CheckpointFile::open(MPI_Comm comm, const std::string &path) {
   std::string found;
   double number = 0;
   PetscFunctionBeginUser;
-  PetscCall(file_.open(comm, path));
-  if (file_.has_attribute("/", "kind")) PetscCall(file_.read_attribute("/", "kind", &found));
-  PetscCall(fail_together(comm, found == kind ? "" : path + ": not a checkpoint of this program"));
-  PetscCall(file_.read_attribute("/", "format", &number));
-  PetscCall(file_.read_attribute("/", "version", &version_));
-  PetscCall(fail_together(comm, number == format
-                                    ? ""
-                                    : path + ": has format " + std::to_string(long(number)) + " (written by version " +
-                                          version_ + "), this program reads format " + std::to_string(format)));
-  std::string content, expected;
-  PetscCall(file_.read_attribute("/", "content", &expected));
-  PetscCall(find_content(file_, &content));
+  PetscCall(Hdf5File::open(comm, path));
+  if (has_attribute("/", "kind")) PetscCall(read_attribute("/", "kind", &found));
   PetscCall(
-      fail_together(comm, content == expected ? "" : path + ": damaged (its datasets are not those it was made of)"));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CheckpointFile::require_checksum(const std::string &dataset) {
-  std::string checksum;
-  PetscFunctionBeginUser;
-  PetscCall(file_.read_attribute(dataset, "checksum", &checksum));
-  PetscFunctionReturn(0);
-}
-
-template <class T>
-PetscErrorCode CheckpointFile::read(const std::string &name, std::vector<T> *values) {
-  std::vector<hsize_t> shape;
-  PetscFunctionBeginUser;
-  PetscCall(require_checksum(name));
-  PetscCall(file_.read_array(name, &shape, values));
+      check(found == kind, "is not a checkpoint of this program; accepted: a file checkpoint_NNNNNNNN.h5 of a run"));
+  PetscCall(read_attribute("/", "format", &number));
+  PetscCall(read_attribute("/", "version", &version_));
+  PetscCall(check(number == format, "has format " + std::to_string(long(number)) + " (written by version " + version_ +
+                                        "), this program reads format " + std::to_string(format)));
+  std::string content, expected;
+  PetscCall(read_attribute("/", "content", &expected));
+  PetscCall(find_content(*this, &content));
+  PetscCall(check(content == expected, "is damaged: datasets or their checksums are missing or have changed"));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CheckpointFile::read_options(std::string *options) {
   std::vector<unsigned char> text;
   PetscFunctionBeginUser;
-  PetscCall(read("options", &text));
+  PetscCall(read_array("options", &text));
   options->assign(text.begin(), text.end());
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CheckpointFile::read_numbers(CheckpointNumbers *numbers) {
   PetscFunctionBeginUser;
-  for (auto &[name, values] : numbers->reals) PetscCall(read(name, &values));
-  for (auto &[name, values] : numbers->integers) PetscCall(read(name, &values));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CheckpointFile::read_if_there(const std::string &name, std::vector<long> *integers) {
-  PetscFunctionBeginUser;
-  integers->clear();
-  if (file_.has(name)) PetscCall(read(name, integers));
+  for (auto &[name, values] : numbers->reals) PetscCall(read_array(name, &values));
+  for (auto &[name, values] : numbers->integers) PetscCall(read_array(name, &values));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CheckpointFile::read_records(CheckpointRecords *records) {
   PetscFunctionBeginUser;
   records->values.clear();
-  if (!file_.has(records->name)) PetscFunctionReturn(0);
-  PetscCall(require_checksum(records->name));
-  PetscCall(file_.read_records(records->name, records->numbers, &records->values));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CheckpointFile::read_own_records(CheckpointRecords *records) {
-  PetscFunctionBeginUser;
-  if (!file_.has(records->name)) PetscFunctionReturn(0);
-  PetscCall(require_checksum(records->name));
-  PetscCall(file_.read_own_records(records->name, records->numbers, &records->values));
+  if (has(records->name)) PetscCall(Hdf5File::read_records(records->name, records->numbers, &records->values));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CheckpointFile::read_fields(const Box &box, const std::vector<CheckpointField> &fields) {
   PetscFunctionBeginUser;
-  for (const CheckpointField &field : fields) {
-    if (field.optional && !file_.has(field.name)) continue;
-    PetscCall(require_checksum(field.name));
-    PetscCall(file_.read_field(box, field.name, field.staggering, field.view));
-  }
+  for (const CheckpointField &field : fields)
+    if (!field.optional || has(field.name)) PetscCall(read_field(box, field.name, field.staggering, field.view));
   PetscFunctionReturn(0);
 }
 

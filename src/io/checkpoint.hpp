@@ -42,41 +42,23 @@ PetscErrorCode write_checkpoint(const Domain &domain, const std::string &path, c
                                 const CheckpointNumbers &numbers, const std::vector<CheckpointField> &fields,
                                 const std::vector<CheckpointRecords> &records);
 
-/// Reads one. Every dataset must have its checksum and match it. All members are collective and fail alike on all
-/// ranks, with one line that begins with the path.
-class CheckpointFile {
+/// Reads one. All members are collective and fail alike on all ranks, with one line that begins with the path.
+class CheckpointFile : public Hdf5File {
 public:
-  /// Refuses what is not a checkpoint, formats of other versions, and files whose datasets or checksums have changed.
+  /// Refuses files that are no checkpoints, formats of other versions, and files of which a dataset or a checksum is
+  /// missing or has changed.
   PetscErrorCode open(MPI_Comm comm, const std::string &path);
   /// The program that wrote it.
   const std::string &version() const { return version_; }
   PetscErrorCode read_options(std::string *options);
   /// The names in `numbers` say what to read.
   PetscErrorCode read_numbers(CheckpointNumbers *numbers);
-  /// Integers that not every checkpoint has: empty if this one has not.
-  PetscErrorCode read_if_there(const std::string &name, std::vector<long> *integers);
-  bool has(const std::string &name) const { return file_.has(name); }
-  /// Each rank gets some; none if there are none.
+  /// Each rank gets an equal share; none if there are none.
   PetscErrorCode read_records(CheckpointRecords *records);
-  /// As many as `values` has room for, one rank's after the other's: all of them together.
-  PetscErrorCode read_own_records(CheckpointRecords *records);
-  /// As Hdf5File::read_share().
-  template <class T>
-  PetscErrorCode read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values) {
-    PetscFunctionBeginUser;
-    PetscCall(require_checksum(name));
-    PetscCall(file_.read_share(name, total, begin, values));
-    PetscFunctionReturn(0);
-  }
   /// Owned points, the high wall included.
   PetscErrorCode read_fields(const Box &box, const std::vector<CheckpointField> &fields);
 
 private:
-  PetscErrorCode require_checksum(const std::string &dataset);
-  template <class T>
-  PetscErrorCode read(const std::string &name, std::vector<T> *values);
-
-  Hdf5File file_;
   std::string version_;
 };
 

@@ -65,7 +65,7 @@ Deadline::Deadline(int rank, const std::string &path) {
   line.clear();
   if (rank == 0)
     line = "eulastic: error: " + path + ": not open after " + std::to_string(longest_call) +
-           " s; a rank may have failed alone inside HDF5\n";
+           " s; one rank may have failed while the others wait for it inside HDF5\n";
   struct sigaction action {};
   action.sa_handler = end;
   action.sa_flags = SA_RESTART;

@@ -28,7 +28,8 @@ Hdf5Property parallel_access(MPI_Comm comm) {
 // directory would wait inside MPI-IO, and the others elsewhere.
 std::string try_to_open(const std::string &path, int flags) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) return path + ": not a regular file";
+  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    return path + " is not a file; accepted: an HDF5 file";
   const int file = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
   if (file < 0) return "cannot open " + path + ": " + std::strerror(errno);
   (void)::close(file);
@@ -49,8 +50,8 @@ bool ranks_differ(MPI_Comm comm, const std::string &path) {
 
 }  // namespace
 
-PetscErrorCode Hdf5File::check(bool fine, const std::string &what) const {
-  return fail_together(comm_, fine ? std::string() : path_ + ": " + what);
+PetscErrorCode Hdf5File::check(bool fine, const std::string &problem) const {
+  return fail_together(comm_, fine ? std::string() : path_ + ": " + problem);
 }
 
 PetscErrorCode Hdf5File::create(MPI_Comm comm, const std::string &path) {
@@ -65,7 +66,7 @@ PetscErrorCode Hdf5File::create(MPI_Comm comm, const std::string &path) {
   const Hdf5Property access = parallel_access(comm);
   const Deadline deadline(mpi_rank_, path);
   file_ = Hdf5FileHandle(H5Fcreate(target.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
-  PetscCall(check(bool(file_), "cannot create this HDF5 file"));
+  PetscCall(check(bool(file_), "HDF5 cannot create this file"));
   PetscFunctionReturn(0);
 }
 
@@ -78,14 +79,14 @@ PetscErrorCode Hdf5File::open(MPI_Comm comm, const std::string &path) {
   const Hdf5Property access = parallel_access(comm);
   const Deadline deadline(mpi_rank_, path);
   file_ = Hdf5FileHandle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
-  PetscCall(check(bool(file_), "not an HDF5 file, or a damaged or truncated one"));
+  PetscCall(check(bool(file_), "is not an HDF5 file, or is damaged or truncated"));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Hdf5File::commit() {
   PetscFunctionBeginUser;
   // The flush syncs every rank's part, which rank 0 could not do for other nodes.
-  PetscCall(check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be completed (disk full?)"));
+  PetscCall(check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written to the end (disk full?)"));
   PetscCall(check(file_.close(), "cannot be closed (disk full?)"));
   PetscCall(fail_together(comm_, mpi_rank_ == 0 ? replace_file(path_) : std::string()));
   writing_ = false;
@@ -136,97 +137,17 @@ PetscErrorCode Hdf5File::open_dataset(const std::string &name, Hdf5Dataset *data
   PetscFunctionReturn(0);
 }
 
-// Small arrays and attributes.
-
-PetscErrorCode Hdf5File::verify(const std::string &name, std::uint64_t sum) {
-  std::string stored;
-  PetscFunctionBeginUser;
-  if (!has_attribute(name, "checksum")) PetscFunctionReturn(0);
-  PetscCall(read_attribute(name, "checksum", &stored));
-  PetscCall(check(stored == checksum_text(sum), "dataset " + name + " is damaged (its checksum differs)"));
-  PetscFunctionReturn(0);
-}
-
-template <class T>
-PetscErrorCode Hdf5File::write_array(const std::string &name, const std::vector<hsize_t> &shape,
-                                     const std::vector<T> &values) {
-  PetscFunctionBeginUser;
-  const Hdf5Space space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
-  Hdf5Dataset dataset(
-      H5Dcreate2(file_.get(), name.c_str(), hdf5_type<T>(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  PetscCall(check(bool(dataset), "cannot create dataset " + name));
-  if (mpi_rank_ > 0) (void)H5Sselect_none(space.get());
-  const Hdf5Property transfer = hdf5_collective();
-  const bool written =
-      H5Dwrite(dataset.get(), hdf5_type<T>(), space.get(), space.get(), transfer.get(), values.data()) >= 0;
-  PetscCall(check(dataset.close() && written, "cannot write dataset " + name + " (disk full?)"));
-  std::uint64_t sum = mpi_rank_ == 0 ? checksum(values.data(), values.size(), 0) : 0;
-  PetscCallMPI(MPI_Bcast(&sum, 1, MPI_UINT64_T, 0, comm_));
-  PetscCall(write_attribute(name, "checksum", checksum_text(sum)));
-  PetscFunctionReturn(0);
-}
-
-template <class T>
-PetscErrorCode Hdf5File::read_array(const std::string &name, std::vector<hsize_t> *shape, std::vector<T> *values) {
-  Hdf5Dataset dataset;
-  PetscFunctionBeginUser;
-  PetscCall(open_dataset(name, &dataset));
-  *shape = hdf5_shape(dataset.get());
-  double promised = 1;
-  hsize_t file_bytes = 0;
-  for (const hsize_t n : *shape) promised *= double(n);
-  PetscCall(check(H5Fget_filesize(file_.get(), &file_bytes) >= 0 && promised <= double(file_bytes),
-                  "dataset " + name + " would be larger than its file"));
-  const auto count = static_cast<std::size_t>(promised);
-  values->resize(count);
-  const Hdf5Space space(H5Dget_space(dataset.get()));
-  if (mpi_rank_ > 0) (void)H5Sselect_none(space.get());
-  const Hdf5Property transfer = hdf5_collective();
-  const bool read =
-      H5Dread(dataset.get(), hdf5_type<T>(), space.get(), space.get(), transfer.get(), values->data()) >= 0;
-  PetscCall(check(read, "cannot read dataset " + name));
-  PetscCallMPI(broadcast_bytes(values->data(), count * sizeof(T), comm_));
-  PetscCall(verify(name, checksum(values->data(), count, 0)));
-  PetscFunctionReturn(0);
-}
-
-template PetscErrorCode Hdf5File::write_array(const std::string &, const std::vector<hsize_t> &,
-                                              const std::vector<double> &);
-template PetscErrorCode Hdf5File::write_array(const std::string &, const std::vector<hsize_t> &,
-                                              const std::vector<long> &);
-template PetscErrorCode Hdf5File::write_array(const std::string &, const std::vector<hsize_t> &,
-                                              const std::vector<unsigned char> &);
-template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<hsize_t> *, std::vector<double> *);
-template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<hsize_t> *, std::vector<long> *);
-template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<hsize_t> *, std::vector<unsigned char> *);
+// Attributes.
 
 PetscErrorCode Hdf5File::write_raw_attribute(const std::string &object, const std::string &name, hid_t type,
-                                             const Hdf5Space &space, const void *value) {
+                                             hsize_t count, const void *values) {
   PetscFunctionBeginUser;
+  const Hdf5Space space(count > 1 ? H5Screate_simple(1, &count, nullptr) : H5Screate(H5S_SCALAR));
   Hdf5Attribute attribute(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), type, space.get(), H5P_DEFAULT,
                                             H5P_DEFAULT, H5P_DEFAULT));
-  const bool written = attribute && H5Awrite(attribute.get(), type, value) >= 0;
+  const bool written = attribute && H5Awrite(attribute.get(), type, values) >= 0;
   PetscCall(check(attribute.close() && written, "cannot write attribute " + name + " of " + object));
   PetscFunctionReturn(0);
-}
-
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, const std::string &value) {
-  return write_raw_attribute(object, name, hdf5_string(value.size()).get(), Hdf5Space(H5Screate(H5S_SCALAR)),
-                             value.c_str());
-}
-
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, const Real3 &value) {
-  const hsize_t count = value.size();
-  return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate_simple(1, &count, nullptr)),
-                             value.data());
-}
-
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, double value) {
-  return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, Hdf5Space(H5Screate(H5S_SCALAR)), &value);
-}
-
-PetscErrorCode Hdf5File::write_attribute(const std::string &object, const std::string &name, long value) {
-  return write_raw_attribute(object, name, H5T_NATIVE_LONG, Hdf5Space(H5Screate(H5S_SCALAR)), &value);
 }
 
 PetscErrorCode Hdf5File::open_attribute(const std::string &object, const std::string &name, Hdf5Attribute *attribute) {
@@ -251,28 +172,18 @@ PetscErrorCode Hdf5File::read_attribute(const std::string &object, const std::st
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Hdf5File::read_attribute(const std::string &object, const std::string &name,
-                                        std::vector<double> *value) {
+PetscErrorCode Hdf5File::read_attribute(const std::string &object, const std::string &name, double *values, int count) {
   Hdf5Attribute attribute;
   PetscFunctionBeginUser;
   PetscCall(open_attribute(object, name, &attribute));
   const Hdf5Space space(H5Aget_space(attribute.get()));
-  value->resize(H5Sget_simple_extent_npoints(space.get()));
-  PetscCall(check(H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, value->data()) >= 0,
-                  "cannot read attribute " + name + " of " + object + " as numbers"));
+  PetscCall(check(
+      H5Sget_simple_extent_npoints(space.get()) == count && H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, values) >= 0,
+      "attribute " + name + " of " + object + " is not " + std::to_string(count) + " numbers"));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode Hdf5File::read_attribute(const std::string &object, const std::string &name, double *value) {
-  std::vector<double> values;
-  PetscFunctionBeginUser;
-  PetscCall(read_attribute(object, name, &values));
-  PetscCall(check(values.size() == 1, "attribute " + name + " of " + object + " is not one number"));
-  *value = values[0];
-  PetscFunctionReturn(0);
-}
-
-// Fields.
+// Fields, records and arrays.
 
 namespace {
 
@@ -303,16 +214,11 @@ std::string location_name(const Staggering &staggering) {
 }
 
 Hdf5File::Hyperslab Hdf5File::owned_box(const Box &box, const Int3 &extra, std::size_t components) {
-  Hyperslab slab;
+  Hyperslab slab{{components > 1 ? 4 : 3, {0, 0, 0, 0}, {0, 0, 0, components}}, {0, 0, 0, components}};
   for (int d = 0; d < 3; ++d) {
     slab.total[2 - d] = box.domain_cells()[d] + extra[d];
     slab.begin[2 - d] = box.layout().begin[d];
     slab.count[2 - d] = box.cells()[d] + (box.touches_high(d) ? extra[d] : 0);
-  }
-  if (components > 1) {
-    slab.rank = 4;
-    slab.begin[3] = 0;
-    slab.total[3] = slab.count[3] = components;
   }
   return slab;
 }
@@ -336,20 +242,18 @@ std::uint64_t box_checksum(const Hyperslab &slab, const std::vector<T> &values) 
 }  // namespace
 
 template <class T>
-PetscErrorCode Hdf5File::write_values(const std::string &name, const Hyperslab &slab, hid_t file_type,
-                                      const std::vector<T> &values) {
+PetscErrorCode Hdf5File::write_values(const std::string &name, const Hyperslab &slab, const std::vector<T> &values) {
   PetscFunctionBeginUser;
   const Hdf5Space file_space(H5Screate_simple(slab.rank, slab.total, nullptr));
   const Hdf5Property creation(H5Pcreate(H5P_DATASET_CREATE));
   (void)H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);  // every point is written
-  Hdf5Dataset dataset(
-      H5Dcreate2(file_.get(), name.c_str(), file_type, file_space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT));
+  Hdf5Dataset dataset(H5Dcreate2(file_.get(), name.c_str(), hdf5_type<T>(), file_space.get(), H5P_DEFAULT,
+                                 creation.get(), H5P_DEFAULT));
   PetscCall(check(bool(dataset), "cannot create dataset " + name));
   const haddr_t offset = H5Dget_offset(dataset.get());
   const hsize_t bytes = H5Dget_storage_size(dataset.get());
   PetscCall(fail_together(comm_, mpi_rank_ == 0 ? reserve(temporary_name(path_), offset, bytes) : std::string()));
-  const Hdf5Property transfer = hdf5_collective();
-  const bool written = write_block(dataset.get(), slab.rank, slab.begin, slab.count, values.data(), transfer.get());
+  const bool written = write_block(dataset.get(), slab, hdf5_type<T>(), values.data(), hdf5_collective().get());
   PetscCall(check(dataset.close() && written, "cannot write dataset " + name + " (disk full?)"));
   std::uint64_t sum = box_checksum(slab, values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));
@@ -358,7 +262,7 @@ PetscErrorCode Hdf5File::write_values(const std::string &name, const Hyperslab &
 }
 
 template <class T>
-PetscErrorCode Hdf5File::write_field_as(const Box &box, const FieldFormat &format, hid_t file_type,
+PetscErrorCode Hdf5File::write_field_as(const Box &box, const FieldFormat &format,
                                         const std::vector<ConstView> &components) {
   PetscFunctionBeginUser;
   Int3 extra{};
@@ -375,7 +279,7 @@ PetscErrorCode Hdf5File::write_field_as(const Box &box, const FieldFormat &forma
     for (int j = 0; j < int(slab.count[1]); ++j)
       for (int i = 0; i < int(slab.count[2]); ++i)
         for (const ConstView &component : components) values.push_back(static_cast<T>(component(i, j, k)));
-  PetscCall(write_values(format.name, slab, file_type, values));
+  PetscCall(write_values(format.name, slab, values));
   PetscCall(write_attribute(
       format.name, "location",
       format.plane < 0 ? location_name(format.staggering) : "wall_" + side_name(format.plane, format.plane_high)));
@@ -386,11 +290,11 @@ PetscErrorCode Hdf5File::write_field(const Box &box, const FieldFormat &format,
                                      const std::vector<ConstView> &components) {
   PetscFunctionBeginUser;
   if (format.stored == Stored::float32)
-    PetscCall(write_field_as<float>(box, format, H5T_IEEE_F32LE, components));
+    PetscCall(write_field_as<float>(box, format, components));
   else if (format.stored == Stored::float64)
-    PetscCall(write_field_as<double>(box, format, H5T_IEEE_F64LE, components));
+    PetscCall(write_field_as<double>(box, format, components));
   else
-    PetscCall(write_field_as<int>(box, format, H5T_STD_I32LE, components));
+    PetscCall(write_field_as<int>(box, format, components));
   PetscFunctionReturn(0);
 }
 
@@ -398,13 +302,16 @@ template <class T>
 PetscErrorCode Hdf5File::read_values(const std::string &name, hid_t dataset, const Hyperslab &slab,
                                      std::vector<T> *values) {
   PetscFunctionBeginUser;
-  const Hdf5Property transfer = hdf5_collective();
   values->resize(slab.count[0] * slab.count[1] * slab.count[2]);
-  const bool read = read_block(dataset, slab.rank, slab.begin, slab.count, values->data(), transfer.get());
+  const bool read = read_block(dataset, slab, hdf5_type<T>(), values->data(), hdf5_collective().get());
   PetscCall(check(read, "cannot read dataset " + name));
   std::uint64_t sum = box_checksum(slab, *values);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, comm_));
-  PetscCall(verify(name, sum));
+  if (!has_attribute(name, "checksum")) PetscFunctionReturn(0);
+  std::string stored;
+  PetscCall(read_attribute(name, "checksum", &stored));
+  PetscCall(
+      check(stored == checksum_text(sum), "dataset " + name + " is damaged: its values do not have its checksum"));
   PetscFunctionReturn(0);
 }
 
@@ -440,7 +347,8 @@ PetscErrorCode Hdf5File::read_field(const Box &box, const std::string &name, con
   // In the stored type, so that the checksum sees the stored bits.
   const Hdf5Type type(H5Dget_type(dataset.get()));
   const H5T_class_t kind = H5Tget_class(type.get());
-  PetscCall(check(kind == H5T_FLOAT || kind == H5T_INTEGER, "dataset " + name + " is not numeric"));
+  PetscCall(check(kind == H5T_FLOAT || kind == H5T_INTEGER,
+                  "dataset " + name + " has no numbers; accepted: integers or floating-point numbers"));
   const Hyperslab slab = owned_box(box, extra, 1);
   if (H5Tget_size(type.get()) != 4)
     PetscCall(read_field_as<double>(name, dataset.get(), slab, field));
@@ -451,22 +359,22 @@ PetscErrorCode Hdf5File::read_field(const Box &box, const std::string &name, con
   PetscFunctionReturn(0);
 }
 
-// So many records of this rank among those of all, in the order of the ranks.
-PetscErrorCode Hdf5File::records_of(unsigned long long mine, std::size_t numbers, Hyperslab *slab) const {
-  unsigned long long end = 0, all = 0;
+// The position of this rank's `mine` rows among those of all ranks, in the order of the ranks.
+PetscErrorCode Hdf5File::own_rows(hsize_t mine, hsize_t *begin, hsize_t *all) const {
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Scan(&mine, &end, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
-  PetscCallMPI(MPI_Allreduce(&mine, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm_));
-  *slab = {3, {all, 1, numbers}, {end - mine, 0, 0}, {mine, 1, numbers}};
+  PetscCallMPI(MPI_Scan(&mine, begin, 1, MPI_UINT64_T, MPI_SUM, comm_));
+  PetscCallMPI(MPI_Allreduce(&mine, all, 1, MPI_UINT64_T, MPI_SUM, comm_));
+  *begin -= mine;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode Hdf5File::write_records(const std::string &name, std::size_t numbers,
                                        const std::vector<double> &values) {
-  Hyperslab slab;
+  const hsize_t mine = values.size() / numbers;
+  hsize_t begin, all;
   PetscFunctionBeginUser;
-  PetscCall(records_of(values.size() / numbers, numbers, &slab));
-  PetscCall(write_values(name, slab, H5T_IEEE_F64LE, values));
+  PetscCall(own_rows(mine, &begin, &all));
+  if (all > 0) PetscCall(write_values(name, {{3, {begin, 0, 0}, {mine, 1, numbers}}, {all, 1, numbers}}, values));
   PetscFunctionReturn(0);
 }
 
@@ -477,38 +385,67 @@ PetscErrorCode Hdf5File::read_records(const std::string &name, std::size_t numbe
   PetscCallMPI(MPI_Comm_size(comm_, &ranks));
   PetscCall(open_dataset(name, &dataset));
   const std::vector<hsize_t> shape = hdf5_shape(dataset.get());
-  PetscCall(check(shape.size() == 3 && shape[1] == 1 && shape[2] == numbers,
-                  "dataset " + name + " is " + shape_text(shape) + ", not records of " + std::to_string(numbers)));
+  PetscCall(
+      check(shape.size() == 3 && shape[1] == 1 && shape[2] == numbers,
+            "dataset " + name + " is " + shape_text(shape) + "; accepted: records x 1 x " + std::to_string(numbers)));
   const hsize_t begin = shape[0] * hsize_t(mpi_rank_) / hsize_t(ranks),
                 end = shape[0] * hsize_t(mpi_rank_ + 1) / hsize_t(ranks);
-  PetscCall(
-      read_values(name, dataset.get(), {3, {shape[0], 1, numbers}, {begin, 0, 0}, {end - begin, 1, numbers}}, values));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode Hdf5File::read_own_records(const std::string &name, std::size_t numbers, std::vector<double> *values) {
-  Hyperslab slab;
-  Hdf5Dataset dataset;
-  PetscFunctionBeginUser;
-  PetscCall(records_of(values->size() / numbers, numbers, &slab));
-  PetscCall(open_dataset(name, &dataset));
-  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>(slab.total, slab.total + 3),
-                  name + " belongs to another case"));
-  PetscCall(read_values(name, dataset.get(), slab, values));
+  PetscCall(read_values(name, dataset.get(), {{3, {begin, 0, 0}, {end - begin, 1, numbers}}, {shape[0], 1, numbers}},
+                        values));
   PetscFunctionReturn(0);
 }
 
 template <class T>
-PetscErrorCode Hdf5File::read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values) {
+PetscErrorCode Hdf5File::read_own(const std::string &name, std::vector<T> *values) {
+  const hsize_t mine = values->size();
+  hsize_t begin, all;
   Hdf5Dataset dataset;
   PetscFunctionBeginUser;
+  PetscCall(own_rows(mine, &begin, &all));
   PetscCall(open_dataset(name, &dataset));
-  PetscCall(check(hdf5_shape(dataset.get()) == std::vector<hsize_t>{total}, name + " belongs to another case"));
-  PetscCall(read_values(name, dataset.get(), {1, {total, 1, 1}, {begin, 0, 0}, {values->size(), 1, 1}}, values));
+  const std::vector<hsize_t> shape = hdf5_shape(dataset.get()), array{all}, records{all, 1, 1};
+  PetscCall(check(shape == array || shape == records, "dataset " + name + " belongs to another case: it is " +
+                                                          shape_text(shape) + ", this case needs " +
+                                                          std::to_string(all)));
+  const int rank = static_cast<int>(shape.size());
+  PetscCall(read_values(name, dataset.get(), {{rank, {begin, 0, 0}, {mine, 1, 1}}, {all, 1, 1}}, values));
   PetscFunctionReturn(0);
 }
 
-template PetscErrorCode Hdf5File::read_share(const std::string &, hsize_t, hsize_t, std::vector<double> *);
-template PetscErrorCode Hdf5File::read_share(const std::string &, hsize_t, hsize_t, std::vector<long> *);
+template <class T>
+PetscErrorCode Hdf5File::write_array(const std::string &name, const std::vector<T> &values) {
+  hsize_t all = values.size();
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(&all, 1, MPI_UINT64_T, 0, comm_));
+  const hsize_t mine = mpi_rank_ == 0 ? all : 0;
+  PetscCall(write_values(name, {{1, {0, 0, 0}, {mine, 1, 1}}, {all, 1, 1}}, values));
+  PetscFunctionReturn(0);
+}
+
+template <class T>
+PetscErrorCode Hdf5File::read_array(const std::string &name, std::vector<T> *values) {
+  Hdf5Dataset dataset;
+  hsize_t file_bytes = 0;
+  PetscFunctionBeginUser;
+  PetscCall(open_dataset(name, &dataset));
+  const std::vector<hsize_t> shape = hdf5_shape(dataset.get());
+  PetscCall(check(shape.size() == 1, "dataset " + name + " is " + shape_text(shape) + "; accepted: a list"));
+  PetscCall(check(H5Fget_filesize(file_.get(), &file_bytes) >= 0 && shape[0] <= file_bytes,
+                  "dataset " + name + " is damaged: it would be larger than its file"));
+  const hsize_t mine = mpi_rank_ == 0 ? shape[0] : 0;
+  PetscCall(read_values(name, dataset.get(), {{1, {0, 0, 0}, {mine, 1, 1}}, {shape[0], 1, 1}}, values));
+  values->resize(shape[0]);
+  PetscCallMPI(broadcast_bytes(values->data(), values->size() * sizeof(T), comm_));
+  PetscFunctionReturn(0);
+}
+
+template PetscErrorCode Hdf5File::read_own(const std::string &, std::vector<double> *);
+template PetscErrorCode Hdf5File::read_own(const std::string &, std::vector<long> *);
+template PetscErrorCode Hdf5File::write_array(const std::string &, const std::vector<double> &);
+template PetscErrorCode Hdf5File::write_array(const std::string &, const std::vector<long> &);
+template PetscErrorCode Hdf5File::write_array(const std::string &, const std::vector<unsigned char> &);
+template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<double> *);
+template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<long> *);
+template PetscErrorCode Hdf5File::read_array(const std::string &, std::vector<unsigned char> *);
 
 }  // namespace eulastic

@@ -48,62 +48,68 @@ public:
   /// wall the dataset may have N + 1 points; if it has N, the high wall is left as it is. Ghosts are untouched.
   PetscErrorCode read_field(const Box &box, const std::string &name, const Staggering &staggering, View field);
 
-  /// Records of so many numbers, of which every rank has some: (records, 1, numbers), in the order of the ranks.
+  /// Writes records of `numbers` numbers, of which every rank has some: (records, 1, numbers), in the order of the
+  /// ranks. Nothing is written if no rank has any.
   PetscErrorCode write_records(const std::string &name, std::size_t numbers, const std::vector<double> &values);
   /// Each rank gets an equal share of them.
   PetscErrorCode read_records(const std::string &name, std::size_t numbers, std::vector<double> *values);
 
-  /// Small arrays, the same on every rank, written and read by rank 0; T = double, long or unsigned char (text).
+  /// Writes and reads an array (values) of rank 0, which all ranks get; T = double, long or unsigned char (text).
   template <class T>
-  PetscErrorCode write_array(const std::string &name, const std::vector<hsize_t> &shape, const std::vector<T> &values);
+  PetscErrorCode write_array(const std::string &name, const std::vector<T> &values);
   template <class T>
-  PetscErrorCode read_array(const std::string &name, std::vector<hsize_t> *shape, std::vector<T> *values);
-
-  /// The same, as many as `values` has room for; all ranks together read all of them.
-  PetscErrorCode read_own_records(const std::string &name, std::size_t numbers, std::vector<double> *values);
-  /// Of an array of `total` values those that are this rank's, as many as there are `values`, from `begin` on; all
-  /// ranks together read all of it.
+  PetscErrorCode read_array(const std::string &name, std::vector<T> *values);
+  /// Reads this rank's part of an array, or of records of one number: as many values as `values` has. The parts follow
+  /// one another in the order of the ranks and must be the whole dataset. T = double or long.
   template <class T>
-  PetscErrorCode read_share(const std::string &name, hsize_t total, hsize_t begin, std::vector<T> *values);
+  PetscErrorCode read_own(const std::string &name, std::vector<T> *values);
 
   /// Attributes of `object`: a dataset, a group, or "/" for the file.
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::string &value);
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const Real3 &value);
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, double value);
-  PetscErrorCode write_attribute(const std::string &object, const std::string &name, long value);
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const std::string &value) {
+    return write_raw_attribute(object, name, hdf5_string(value.size()).get(), 1, value.c_str());
+  }
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, const Real3 &value) {
+    return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, value.size(), value.data());
+  }
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, double value) {
+    return write_raw_attribute(object, name, H5T_NATIVE_DOUBLE, 1, &value);
+  }
+  PetscErrorCode write_attribute(const std::string &object, const std::string &name, long value) {
+    return write_raw_attribute(object, name, H5T_NATIVE_LONG, 1, &value);
+  }
   PetscErrorCode read_attribute(const std::string &object, const std::string &name, std::string *value);
-  PetscErrorCode read_attribute(const std::string &object, const std::string &name, std::vector<double> *value);
-  PetscErrorCode read_attribute(const std::string &object, const std::string &name, double *value);
+  /// Reads `count` numbers.
+  PetscErrorCode read_attribute(const std::string &object, const std::string &name, double *values, int count = 1);
 
   bool has(const std::string &dataset) const;
   bool has_attribute(const std::string &object, const std::string &name) const;
   /// Names at the root of the file.
   std::vector<std::string> datasets() const;
 
+protected:
+  /// Collective. Fails on all ranks with "PATH: `problem`" if any has not `fine`.
+  PetscErrorCode check(bool fine, const std::string &problem) const;
+
 private:
-  struct Hyperslab {
-    int rank = 3;
-    hsize_t total[4], begin[4], count[4];  ///< slowest dimension first
+  /// This rank's block of a dataset whose whole shape is `total`.
+  struct Hyperslab : Hdf5Block {
+    hsize_t total[4];
   };
   static Hyperslab owned_box(const Box &box, const Int3 &extra, std::size_t components);
   template <class T>
-  PetscErrorCode write_values(const std::string &name, const Hyperslab &box, hid_t file_type,
-                              const std::vector<T> &values);
+  PetscErrorCode write_values(const std::string &name, const Hyperslab &box, const std::vector<T> &values);
   template <class T>
-  PetscErrorCode write_field_as(const Box &box, const FieldFormat &format, hid_t file_type,
-                                const std::vector<ConstView> &components);
+  PetscErrorCode write_field_as(const Box &box, const FieldFormat &format, const std::vector<ConstView> &components);
+  /// Compares with the checksum of the dataset, if it has one.
   template <class T>
   PetscErrorCode read_values(const std::string &name, hid_t dataset, const Hyperslab &box, std::vector<T> *values);
   template <class T>
   PetscErrorCode read_field_as(const std::string &name, hid_t dataset, const Hyperslab &box, View field);
-  PetscErrorCode records_of(unsigned long long mine, std::size_t numbers, Hyperslab *slab) const;
-  PetscErrorCode write_raw_attribute(const std::string &object, const std::string &name, hid_t type,
-                                     const Hdf5Space &space, const void *value);
+  PetscErrorCode own_rows(hsize_t mine, hsize_t *begin, hsize_t *all) const;
+  PetscErrorCode write_raw_attribute(const std::string &object, const std::string &name, hid_t type, hsize_t count,
+                                     const void *values);
   PetscErrorCode open_dataset(const std::string &name, Hdf5Dataset *dataset) const;
   PetscErrorCode open_attribute(const std::string &object, const std::string &name, Hdf5Attribute *attribute);
-  /// Compares with the stored checksum, if there is one; `sum` is this rank's share.
-  PetscErrorCode verify(const std::string &name, std::uint64_t sum);
-  PetscErrorCode check(bool fine, const std::string &what) const;
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int mpi_rank_ = 0;

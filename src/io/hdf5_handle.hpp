@@ -88,21 +88,34 @@ inline Hdf5Property hdf5_collective() {
   return transfer;
 }
 
-/// Reads the block of a dataset that begins at `start` and has `count` values along each of its `rank` dimensions.
-template <class T>
-bool read_block(hid_t dataset, int rank, const hsize_t *start, const hsize_t *count, T *values,
-                hid_t transfer = H5P_DEFAULT) {
-  const Hdf5Space file(H5Dget_space(dataset)), memory(H5Screate_simple(rank, count, nullptr));
-  return H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, start, nullptr, count, nullptr) >= 0 &&
-         H5Dread(dataset, hdf5_type<T>(), memory.get(), file.get(), transfer, values) >= 0;
+/// Access to a file by one process, without HDF5's own error messages (the user sees ours) and without a lock of the
+/// file: the directory of a run is locked, and not every file system can lock files.
+inline Hdf5Property hdf5_local_access() {
+  (void)H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
+  (void)H5Pset_file_locking(access.get(), false, true);
+  return access;
 }
-/// Writes it.
-template <class T>
-bool write_block(hid_t dataset, int rank, const hsize_t *start, const hsize_t *count, const T *values,
-                 hid_t transfer = H5P_DEFAULT) {
-  const Hdf5Space file(H5Dget_space(dataset)), memory(H5Screate_simple(rank, count, nullptr));
-  return H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, start, nullptr, count, nullptr) >= 0 &&
-         H5Dwrite(dataset, hdf5_type<T>(), memory.get(), file.get(), transfer, values) >= 0;
+
+/// A block of a dataset: its first index and number of values along each of its dimensions, the slowest first.
+struct Hdf5Block {
+  int rank;
+  hsize_t begin[4], count[4];
+};
+
+/// Reads a block into `values` of a `type` in memory.
+inline bool read_block(hid_t dataset, const Hdf5Block &block, hid_t type, void *values, hid_t transfer = H5P_DEFAULT) {
+  const Hdf5Space file(H5Dget_space(dataset)), memory(H5Screate_simple(block.rank, block.count, nullptr));
+  return H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, block.begin, nullptr, block.count, nullptr) >= 0 &&
+         H5Dread(dataset, type, memory.get(), file.get(), transfer, values) >= 0;
+}
+
+/// Writes a block.
+inline bool write_block(hid_t dataset, const Hdf5Block &block, hid_t type, const void *values,
+                        hid_t transfer = H5P_DEFAULT) {
+  const Hdf5Space file(H5Dget_space(dataset)), memory(H5Screate_simple(block.rank, block.count, nullptr));
+  return H5Sselect_hyperslab(file.get(), H5S_SELECT_SET, block.begin, nullptr, block.count, nullptr) >= 0 &&
+         H5Dwrite(dataset, type, memory.get(), file.get(), transfer, values) >= 0;
 }
 
 }  // namespace eulastic

@@ -42,33 +42,24 @@ std::string listed(const std::vector<std::string> &names) {
   return names.empty() ? "a file with datasets" : text + (names.size() > most_names ? ", ..." : "");
 }
 
-Hdf5Dataset open_dataset(hid_t file, const std::string &name) {
-  return Hdf5Dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT));
-}
-
-// Opens the dataset `usual`, or the only one.
-std::string open_unnamed(const std::string &file, const std::string &usual, Hdf5Input *input) {
-  if (H5Lexists(input->file.get(), usual.c_str(), H5P_DEFAULT) > 0) {
-    input->name = usual;
-    input->dataset = open_dataset(input->file.get(), usual);
-    if (input->dataset) return {};
+// Opens the dataset `name`; if this is empty `usual`, or else the only one.
+std::string open_dataset(const std::string &file, const std::string &name, const std::string &usual, Hdf5Input *input) {
+  const auto open = [input](const std::string &which) {
+    input->name = which;
+    input->dataset = Hdf5Dataset(H5Dopen2(input->file.get(), which.c_str(), H5P_DEFAULT));
+    return bool(input->dataset);
+  };
+  if (open(name.empty() ? usual : name)) return {};
+  const std::vector<std::string> names = dataset_names(input->file.get());
+  if (name.empty()) {
+    if (names.empty()) return file + " has no datasets; accepted: a file with one";
+    if (names.size() > 1)
+      return file + " has several datasets; accepted: " + file + ":DATASET, one of " + listed(names);
+    if (open(names[0])) return {};
   }
-  const std::vector<std::string> names = dataset_names(input->file.get());
-  if (names.empty()) return file + " has no datasets; accepted: a file with one";
-  if (names.size() > 1) return file + " has several datasets; accepted: " + file + ":DATASET, one of " + listed(names);
-  input->name = names[0];
-  input->dataset = open_dataset(input->file.get(), names[0]);
-  return input->dataset ? "" : file + ": its dataset " + names[0] + " cannot be opened, it is damaged";
-}
-
-std::string open_named(const std::string &file, const std::string &name, Hdf5Input *input) {
-  input->name = name;
-  input->dataset = open_dataset(input->file.get(), name);
-  if (input->dataset) return {};
-  const std::vector<std::string> names = dataset_names(input->file.get());
-  const std::string from_root = name.substr(std::min(name.find_first_not_of('/'), name.size()));
+  const std::string from_root = input->name.substr(std::min(input->name.find_first_not_of('/'), input->name.size()));
   if (std::find(names.begin(), names.end(), from_root) != names.end())
-    return file + ": its dataset " + name + " cannot be opened, it is damaged";
+    return file + ": its dataset " + input->name + " cannot be opened, it is damaged";
   return file + ": there is no dataset " + name + "; accepted: " + listed(names);
 }
 
@@ -96,8 +87,7 @@ std::string open_input(const std::string &file, const std::string &name, const s
   (void)H5Pset_cache(access.get(), 0, 10007, chunk_cache, 1.0);
   input->file = Hdf5FileHandle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.get()));
   if (!input->file) return file + " is damaged or truncated: HDF5 cannot open it";
-  const std::string wrong = name.empty() ? open_unnamed(file, usual, input) : open_named(file, name, input);
-  if (!wrong.empty()) return wrong;
+  if (std::string wrong = open_dataset(file, name, usual, input); !wrong.empty()) return wrong;
   const Hdf5Property creation(H5Dget_create_plist(input->dataset.get()));
   // An external dataset would be in another file, a virtual one in many.
   if (H5Pget_external_count(creation.get()) > 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL)
@@ -123,7 +113,7 @@ std::string read_profile_file(const std::string &path, const std::string &datase
   const std::string said = path + ": dataset " + input.name;
   const Hdf5Type type(H5Dget_type(input.dataset.get()));
   if (const H5T_class_t kind = H5Tget_class(type.get()); kind != H5T_FLOAT && kind != H5T_INTEGER)
-    return said + " has no numbers";
+    return said + " has no numbers; accepted: integers or floating-point numbers";
   const std::vector<hsize_t> shape = hdf5_shape(input.dataset.get());
   std::vector<std::vector<hsize_t>> accepted{{hsize_t(slow), hsize_t(fast)}, {hsize_t(slow), hsize_t(fast), 3}};
   if (slow == 1) {
@@ -140,7 +130,7 @@ std::string read_profile_file(const std::string &path, const std::string &datase
   if (H5Dread(input.dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
     return said + " cannot be read, it is truncated or damaged";
   if (!std::all_of(all.begin(), all.end(), [](double value) { return std::isfinite(value); }))
-    return said + " has values that are not finite";
+    return said + " has values that are not finite; accepted: finite numbers";
   values->resize(cells);
   for (std::size_t c = 0; c < cells; ++c) (*values)[c] = vector ? sign * all[3 * c + std::size_t(component)] : all[c];
   return {};

@@ -14,8 +14,8 @@ public:
   std::string open(const std::string &file, const std::string &dataset) {
     file_ = file;
     if (std::string wrong = open_input(file, dataset, "solid_fraction", &input_); !wrong.empty()) return wrong;
-    if (std::string wrong = read_type(input_.name); !wrong.empty()) return wrong;
-    if (std::string wrong = read_shape(input_.name); !wrong.empty()) return wrong;
+    if (std::string wrong = read_type(); !wrong.empty()) return wrong;
+    if (std::string wrong = read_shape(); !wrong.empty()) return wrong;
     std::vector<double> values;
     if (std::string wrong = read_attribute("spacing", &values); !wrong.empty()) return wrong;
     if (std::string wrong = set_spacing(values); !wrong.empty()) return wrong;
@@ -26,17 +26,17 @@ public:
 
 protected:
   std::string read_values(const Int3 &begin, const Int3 &end, double *values) override {
-    const hsize_t first[3] = {hsize_t(begin[2]), hsize_t(begin[1]), hsize_t(begin[0])};
-    const hsize_t count[3] = {hsize_t(end[2] - begin[2]), hsize_t(end[1] - begin[1]), hsize_t(end[0] - begin[0])};
-    const int skip = 3 - rank_;  // a plane has no z
-    const Hdf5Space space(H5Dget_space(input_.dataset.get())), memory(H5Screate_simple(rank_, count + skip, nullptr));
-    const std::size_t n = count[0] * count[1] * count[2];
+    Hdf5Block block{rank_, {}, {}};
+    std::size_t n = 1;
+    for (int d = 0; d < rank_; ++d) {
+      block.begin[rank_ - 1 - d] = hsize_t(begin[d]);
+      block.count[rank_ - 1 - d] = hsize_t(end[d] - begin[d]);
+      n *= std::size_t(end[d] - begin[d]);
+    }
     if (mask_) bytes_.resize(n * size_);
-    const bool read =
-        H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, first + skip, nullptr, count + skip, nullptr) >= 0 &&
-        H5Dread(input_.dataset.get(), mask_ ? type_.get() : H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
-                mask_ ? static_cast<void *>(bytes_.data()) : values) >= 0;
-    if (!read) return "its values cannot be read, it is truncated or damaged";
+    void *const read = mask_ ? static_cast<void *>(bytes_.data()) : values;
+    if (!read_block(input_.dataset.get(), block, mask_ ? type_.get() : H5T_NATIVE_DOUBLE, read))
+      return "its values cannot be read, it is truncated or damaged";
     for (std::size_t v = 0; mask_ && v < n; ++v) {
       const auto voxel = bytes_.begin() + static_cast<std::ptrdiff_t>(v * size_);
       values[v] =
@@ -46,33 +46,34 @@ protected:
   }
 
 private:
-  std::string read_type(const std::string &name) {
+  std::string refuse(const std::string &wrong) const { return file_ + ": dataset " + input_.name + " " + wrong; }
+
+  std::string read_type() {
     type_ = Hdf5Type(H5Dget_type(input_.dataset.get()));
     size_ = H5Tget_size(type_.get());
     const H5T_class_t kind = H5Tget_class(type_.get());
     mask_ = kind == H5T_INTEGER || kind == H5T_ENUM || kind == H5T_BITFIELD;  // h5py writes booleans as an enum
     if ((!mask_ && kind != H5T_FLOAT) || size_ < 1 || size_ > 16)
-      return file_ + ": dataset " + name + " has neither integers, booleans nor floats";
+      return refuse("has no numbers; accepted: integers and booleans as a mask, or floating-point numbers");
     return {};
   }
 
-  std::string read_shape(const std::string &name) {
+  std::string read_shape() {
     const std::vector<hsize_t> shape = hdf5_shape(input_.dataset.get());
     rank_ = static_cast<int>(shape.size());
     if (rank_ != 2 && rank_ != 3)
-      return file_ + ": dataset " + name + " has " + std::to_string(rank_) +
-             " dimensions; accepted: 3 as (nz, ny, nx), or 2 as (ny, nx)";
+      return refuse("has " + std::to_string(rank_) + " dimensions; accepted: 3 as (nz, ny, nx), or 2 as (ny, nx)");
     const Hdf5Property creation(H5Dget_create_plist(input_.dataset.get()));
     const bool chunked = H5Pget_layout(creation.get()) == H5D_CHUNKED;
-    if (chunked && H5Pget_nfilters(creation.get()) > 0 && !filters_are_there(creation.get()))
-      return file_ + ": dataset " + name + " is packed with a filter that this HDF5 has not; accepted: gzip, or none";
+    if (!filters_are_there(creation.get()))
+      return refuse("is compressed by a filter that this HDF5 lacks; accepted: gzip, or no compression");
     const double stored = double(H5Dget_storage_size(input_.dataset.get()));
-    if (stored == 0) return file_ + ": dataset " + name + " has no values";
+    if (stored == 0) return refuse("has no values; accepted: one value per voxel");
     hsize_t chunk[3] = {1, 1, 1};
     if (chunked) (void)H5Pget_chunk(creation.get(), rank_, chunk);
     const double chunk_bytes = double(chunk[0]) * double(chunk[1]) * double(chunk[2]) * double(size_);
     const double most = chunked ? best_compression * stored : stored;
-    if (chunk_bytes > most) return file_ + ": dataset " + name + " has chunks larger than what the file holds";
+    if (chunk_bytes > most) return refuse("is damaged: one chunk would be larger than the file");
     return set_count({shape.rbegin(), shape.rend()}, double(size_), most);
   }
 
@@ -82,7 +83,7 @@ private:
       std::size_t elements = 0;
       const H5Z_filter_t filter =
           H5Pget_filter2(creation, static_cast<unsigned>(f), &flags, &elements, nullptr, 0, nullptr, &config);
-      if (filter < 0 || H5Zfilter_avail(filter) <= 0) return false;
+      if (filter < 0 || H5Zfilter_avail(filter) <= 0) return false;  // loads a plugin
     }
     return true;
   }

@@ -1,5 +1,6 @@
 #include "io/json.hpp"
 
+#include "io/option_values.hpp"
 #include "io/text_file.hpp"
 
 #include <cmath>
@@ -26,43 +27,27 @@ std::string number(double value) { return std::isfinite(value) ? format_double(v
 
 }  // namespace
 
-Json &Json::add(const std::string &key, double value) {
-  members_.emplace_back(quoted(key), number(value));
+Json &Json::add_text(const std::string &key, const std::string &value) {
+  members_.push_back(quoted(key) + ": " + value);
   return *this;
 }
 
-Json &Json::add(const std::string &key, long value) {
-  members_.emplace_back(quoted(key), std::to_string(value));
-  return *this;
-}
+Json &Json::add(const std::string &key, double value) { return add_text(key, number(value)); }
 
-Json &Json::add(const std::string &key, const std::string &value) {
-  members_.emplace_back(quoted(key), quoted(value));
-  return *this;
-}
+Json &Json::add(const std::string &key, long value) { return add_text(key, std::to_string(value)); }
+
+Json &Json::add(const std::string &key, const std::string &value) { return add_text(key, quoted(value)); }
 
 Json &Json::add(const std::string &key, const std::array<double, 3> &value) {
-  members_.emplace_back(quoted(key), "[" + number(value[0]) + ", " + number(value[1]) + ", " + number(value[2]) + "]");
-  return *this;
+  return add_text(key, "[" + number(value[0]) + ", " + number(value[1]) + ", " + number(value[2]) + "]");
 }
 
 Json &Json::add(const std::string &key, const std::vector<Json> &value) {
-  std::string list;
-  for (const Json &item : value) list += (list.empty() ? "\n    " : ",\n    ") + item.line();
-  members_.emplace_back(quoted(key), "[" + list + (list.empty() ? "]" : "\n  ]"));
-  return *this;
+  std::vector<std::string> items;
+  for (const Json &item : value) items.push_back("{" + join(item.members_, ", ") + "}");
+  return add_text(key, items.empty() ? "[]" : "[\n    " + join(items, ",\n    ") + "\n  ]");
 }
 
-std::string Json::line() const {
-  std::string result;
-  for (const auto &[key, value] : members_) result += (result.empty() ? "" : ", ") + key + ": " + value;
-  return "{" + result + "}";
-}
-
-std::string Json::text() const {
-  std::string result;
-  for (const auto &[key, value] : members_) result += (result.empty() ? "\n  " : ",\n  ") + key + ": " + value;
-  return "{" + result + "\n}\n";
-}
+std::string Json::text() const { return "{\n  " + join(members_, ",\n  ") + "\n}\n"; }
 
 }  // namespace eulastic

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace eulastic {
@@ -20,8 +19,9 @@ public:
   std::string text() const;
 
 private:
-  std::string line() const;
-  std::vector<std::pair<std::string, std::string>> members_;  ///< key and value, both as JSON text
+  Json &add_text(const std::string &key, const std::string &value);
+
+  std::vector<std::string> members_;  ///< "KEY": VALUE, as JSON text
 };
 
 }  // namespace eulastic

@@ -26,37 +26,22 @@ Words words_of(std::string text) {
   return words;
 }
 
-bool to_numbers(const std::string &text, std::vector<double> *numbers) {
-  numbers->clear();
-  for (const std::string &word : words_of(text)) {
-    double number = 0;
-    if (!read_number(word, &number)) return false;
-    numbers->push_back(number);
-  }
-  return true;
-}
-
 struct Type {
   int bytes;
   bool is_float;
+  Words names;
 };
 
-const std::map<std::string, Type> types = [] {
-  std::map<std::string, Type> map{
-      {"signed char", {1, false}}, {"uchar", {1, false}}, {"float", {4, true}}, {"double", {8, true}}};
-  const std::map<int, Words> integers{
-      {2, {"short", "short int"}}, {4, {"int"}}, {8, {"longlong", "long long", "long long int"}}};
-  for (const char *name : {"int8", "uint8"}) map[name] = map[std::string(name) + "_t"] = {1, false};
-  map["unsigned char"] = {1, false};
-  for (const auto &[bytes, names] : integers) {
-    for (const std::string &name : names)
-      for (const char *sign : {"", "signed ", "unsigned "}) map[sign + name] = {bytes, false};
-    map["u" + names[0]] = {bytes, false};
-    for (const char *sign : {"int", "uint"})
-      for (const char *end : {"", "_t"}) map[sign + std::to_string(8 * bytes) + end] = {bytes, false};
-  }
-  return map;
-}();
+const std::vector<Type> types{
+    {1, false, {"signed char", "int8", "int8_t", "uchar", "unsigned char", "uint8", "uint8_t"}},
+    {2, false, {"short", "short int", "signed short", "signed short int", "int16", "int16_t"}},
+    {2, false, {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}},
+    {4, false, {"int", "signed int", "int32", "int32_t", "uint", "unsigned int", "uint32", "uint32_t"}},
+    {8, false, {"longlong", "long long", "long long int", "signed long long", "signed long long int"}},
+    {8, false, {"ulonglong", "unsigned long long", "unsigned long long int"}},
+    {8, false, {"int64", "int64_t", "uint64", "uint64_t"}},
+    {4, true, {"float"}},
+    {8, true, {"double"}}};
 
 constexpr double tilt_of_round_off = 1e-6;  // of a direction: a voxel in the longest row that is accepted
 
@@ -77,86 +62,106 @@ public:
   }
 
 private:
+  static bool is_any(double) { return true; }
   bool has(const std::string &name) const { return fields_.count(name) > 0; }
+
+  // The error message about the value of a field.
+  std::string refuse(const std::string &name, const std::string &accepted, const std::string &why = {}) {
+    return name + " \"" + fields_[name] + "\"" + why + "; accepted: " + accepted;
+  }
+
+  // Reads `count` numbers that are `fine`. Returns whether the field has them.
+  template <class Fine>
+  bool read_numbers(const std::string &name, std::size_t count, std::vector<double> *numbers, const Fine &fine) {
+    numbers->clear();
+    for (const std::string &word : words_of(fields_[name])) {
+      double number = 0;
+      if (!read_number(word, &number) || !fine(number)) return false;
+      numbers->push_back(number);
+    }
+    return numbers->size() == count;
+  }
 
   std::string read_sizes() {
     std::vector<double> dimension, sizes;
-    if (!to_numbers(fields_["dimension"], &dimension) || dimension.size() != 1 ||
-        (dimension[0] != 2 && dimension[0] != 3))
-      return "dimension \"" + fields_["dimension"] + "\"; accepted: 2 or 3";
+    if (!read_numbers("dimension", 1, &dimension, [](double n) { return n == 2 || n == 3; }))
+      return refuse("dimension", "2 or 3");
     rank_ = static_cast<std::size_t>(dimension[0]);
     const auto fine = [](double n) { return n >= 1 && n < 1e15 && n == std::floor(n); };
-    if (!to_numbers(fields_["sizes"], &sizes) || sizes.size() != rank_ ||
-        !std::all_of(sizes.begin(), sizes.end(), fine))
-      return "sizes \"" + fields_["sizes"] + "\"; accepted: " + std::to_string(rank_) + " integers >= 1";
-    for (const double n : sizes) header_->sizes.push_back(static_cast<unsigned long long>(n));
+    if (!read_numbers("sizes", rank_, &sizes, fine)) return refuse("sizes", std::to_string(rank_) + " integers >= 1");
+    header_->sizes.assign(sizes.begin(), sizes.end());
     return {};
   }
 
   // Axes that are no directions in space would become one.
   std::string read_kinds() {
-    const auto given = fields_.find("kinds");
-    if (given == fields_.end()) return {};
-    const Words kinds = words_of(given->second);
+    if (!has("kinds")) return {};
+    const Words kinds = words_of(fields_["kinds"]);
     const auto spatial = [](const std::string &kind) {
       const std::string name = lower_case(kind);
       return name == "domain" || name == "space" || name == "none" || name == "???";
     };
     const auto other = std::find_if_not(kinds.begin(), kinds.end(), spatial);
     if (kinds.size() == rank_ && other == kinds.end()) return {};
-    return "kinds \"" + given->second + "\"" +
-           (other == kinds.end() ? "" : ": axis " + std::to_string(other - kinds.begin() + 1) + " is not in space") +
-           "; accepted: domain or space for each of the " + std::to_string(rank_) + " axes";
+    return refuse(
+        "kinds", "domain or space for each of the " + std::to_string(rank_) + " axes",
+        other == kinds.end() ? "" : ": axis " + std::to_string(other - kinds.begin() + 1) + " is not in space");
   }
 
   std::string read_type() {
-    const auto type = types.find(fields_["type"]);
-    if (type == types.end())
-      return "type \"" + fields_["type"] + "\"; accepted: signed or unsigned integers of 1 to 8 bytes, float, double";
-    header_->bytes = type->second.bytes;
-    header_->is_float = type->second.is_float;
-    const std::string encoding = lower_case(fields_["encoding"]);
+    const auto is_named = [&](const Type &type) {
+      return std::find(type.names.begin(), type.names.end(), fields_["type"]) != type.names.end();
+    };
+    const auto type = std::find_if(types.begin(), types.end(), is_named);
+    if (type == types.end()) return refuse("type", "signed or unsigned integers of 1 to 8 bytes, float, double");
+    header_->bytes = type->bytes;
+    header_->is_float = type->is_float;
+    const std::string encoding = lower_case(fields_["encoding"]), endian = lower_case(fields_["endian"]);
     if (encoding == "gzip" || encoding == "gz")
       header_->encoding = NrrdHeader::Encoding::gzip;
     else if (encoding == "ascii" || encoding == "text" || encoding == "txt")
       header_->encoding = NrrdHeader::Encoding::ascii;
     else if (encoding != "raw")
-      return "encoding \"" + encoding + "\"; accepted: raw, gzip, ascii";
-    const std::string endian = lower_case(fields_["endian"]);
+      return refuse("encoding", "raw, gzip, ascii");
     header_->big_endian = endian == "big";
-    if (endian != "big" && endian != "little" &&
-        !(endian.empty() && (header_->bytes == 1 || header_->encoding == NrrdHeader::Encoding::ascii)))
-      return "endian \"" + endian + "\"; accepted: little or big";
-    return {};
+    const bool any_endian = header_->bytes == 1 || header_->encoding == NrrdHeader::Encoding::ascii;
+    if (endian == "big" || endian == "little" || (endian.empty() && any_endian)) return {};
+    return refuse("endian", "little or big");
   }
 
   std::string read_place() {
-    std::vector<double> numbers;
-    if (has("space directions") && has("spacings")) return "has both spacings and space directions; accepted: one";
-    if (has("space directions")) {
-      if (!to_numbers(fields_["space directions"], &numbers) || numbers.size() != rank_ * rank_)
-        return "space directions \"" + fields_["space directions"] + "\"; accepted: " + std::to_string(rank_) +
-               " vectors of " + std::to_string(rank_) + " numbers";
-      for (std::size_t n = 0; n < numbers.size(); ++n) {
-        const bool diagonal = n % (rank_ + 1) == 0;
-        const double along = numbers[n / rank_ * (rank_ + 1)];
-        if (diagonal ? !(numbers[n] > 0) : !(std::fabs(numbers[n]) <= tilt_of_round_off * along))
-          return "space directions \"" + fields_["space directions"] +
-                 "\" are not along x, y, z; accepted: (dx,0,0) (0,dy,0) (0,0,dz), all > 0";
-        if (diagonal) header_->spacing.push_back(numbers[n]);
-      }
-    } else if (has("spacings")) {
-      if (!to_numbers(fields_["spacings"], &numbers) || numbers.size() != rank_)
-        return "spacings \"" + fields_["spacings"] + "\"; accepted: " + std::to_string(rank_) + " numbers > 0";
-      const auto unknown = [](double s) { return std::isnan(s); };
-      if (!std::all_of(numbers.begin(), numbers.end(), unknown)) header_->spacing = numbers;
-    }
+    if (has("space directions") && has("spacings"))
+      return "has both spacings and space directions; accepted: one of them";
+    if (std::string wrong = has("space directions") ? read_directions() : read_spacings(); !wrong.empty()) return wrong;
     if (!has("space origin")) return {};
-    if (!to_numbers(fields_["space origin"], &numbers) || numbers.size() != rank_ ||
-        !std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); }))
-      return "space origin \"" + fields_["space origin"] + "\"; accepted: (x,y,z), finite";
-    header_->corner = numbers;  // the format's origin is the centre of the first voxel
+    if (!read_numbers("space origin", rank_, &header_->corner, [](double x) { return std::isfinite(x); }))
+      return refuse("space origin", "(x,y,z), finite");
+    // The format's origin is the centre of the first voxel.
     for (std::size_t d = 0; d < header_->spacing.size(); ++d) header_->corner[d] -= header_->spacing[d] / 2;
+    return {};
+  }
+
+  std::string read_directions() {
+    std::vector<double> numbers;
+    const std::string rank = std::to_string(rank_);
+    if (!read_numbers("space directions", rank_ * rank_, &numbers, is_any))
+      return refuse("space directions", rank + " vectors of " + rank + " numbers");
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      const bool diagonal = n % (rank_ + 1) == 0;
+      const double along = numbers[n / rank_ * (rank_ + 1)];
+      if (diagonal ? !(numbers[n] > 0) : !(std::fabs(numbers[n]) <= tilt_of_round_off * along))
+        return refuse("space directions", "(dx,0,0) (0,dy,0) (0,0,dz), all > 0", " are not along x, y, z");
+      if (diagonal) header_->spacing.push_back(numbers[n]);
+    }
+    return {};
+  }
+
+  std::string read_spacings() {
+    if (!has("spacings")) return {};
+    if (!read_numbers("spacings", rank_, &header_->spacing, is_any))
+      return refuse("spacings", std::to_string(rank_) + " numbers > 0");
+    const auto is_unknown = [](double s) { return std::isnan(s); };
+    if (std::all_of(header_->spacing.begin(), header_->spacing.end(), is_unknown)) header_->spacing.clear();
     return {};
   }
 
@@ -212,12 +217,13 @@ std::string read_nrrd_header(const std::string &file, NrrdHeader *header) {
     const std::size_t colon = line.find(": ");
     const bool key = line.find(":=") < colon;
     if (line[0] == '#' || key || line.compare(0, 4, "NRRD") == 0) continue;
-    if (colon == std::string::npos) return file + ": header line \"" + line.substr(0, 80) + "\" is no field: value";
+    if (colon == std::string::npos)
+      return file + ": header line \"" + line.substr(0, 80) + "\" is not a field; accepted: FIELD: VALUE";
     std::string value = line.substr(colon + 2);
     value.erase(0, value.find_first_not_of(" \t"));
     value.erase(value.find_last_not_of(" \t") + 1);
     if (!fields.emplace(lower_case(line.substr(0, colon)), value).second)
-      return file + ": field " + line.substr(0, colon) + " is given twice";
+      return file + ": field " + line.substr(0, colon) + " is given twice; accepted: once";
   }
   if (header->data < 0 && !(all && is_detached(fields)))
     return file + ": the NRRD header has no end, it is truncated or damaged";

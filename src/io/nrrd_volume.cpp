@@ -14,7 +14,7 @@
 namespace eulastic {
 namespace {
 
-const char *const truncated = "its data end too early, it is truncated or damaged";
+const char *const truncated = "its data end too early; it is truncated or damaged";
 const char *const damaged = "its gzip data are damaged";
 
 class NrrdVolume : public VolumeFile {
@@ -101,7 +101,7 @@ private:
       if (next_ < first) continue;
       double value = 0;
       if (!read_number(word, &value) || (!header_.is_float && value != std::floor(value)))
-        return "\"" + word + "\" is " + (header_.is_float ? "no number" : "no integer");
+        return "\"" + word + "\" is not " + (header_.is_float ? "a number" : "an integer");
       values[next_ - first] = header_.is_float ? value : value != 0;
     }
     return {};

@@ -39,7 +39,8 @@ bool is_output_file(const std::string &name) {
 std::string RunDirectory::open_locally() {
   const auto because = [&](const std::string &reason) { return "-output_dir " + path_ + ": " + reason; };
   std::error_code error;
-  if (fs::exists(path_, error) && !fs::is_directory(path_, error)) return because("is not a directory");
+  if (fs::exists(path_, error) && !fs::is_directory(path_, error))
+    return because("is not a directory; accepted: a directory, or a path where one can be created");
   fs::create_directories(path_, error);
   if (error) return because(error.message());
   std::vector<fs::path> entries;

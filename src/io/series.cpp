@@ -60,7 +60,7 @@ PetscErrorCode Series::open(MPI_Comm comm, const std::string &path, const std::v
     else if (first.empty())
       problem = append(header + "\n");
     else if (first != header)
-      problem = path + ": has other columns (" + first + "), expected " + header;
+      problem = path + " has other columns: " + first + "; accepted: those of this run, " + header;
   }
   PetscCallMPI(MPI_Bcast(&rows_, 1, MPI_LONG, 0, comm));
   PetscCall(fail_together(comm, problem));

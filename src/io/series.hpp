@@ -30,9 +30,6 @@ public:
   long rows() const { return rows_; }
 
 private:
-  struct Close {
-    void operator()(std::FILE *file) const { (void)std::fclose(file); }
-  };
   std::string append(const std::string &line);  ///< empty, or what went wrong
 
   MPI_Comm comm_ = MPI_COMM_NULL;
@@ -40,7 +37,7 @@ private:
   FileStamp stamp_;
   std::size_t columns_ = 0;
   long rows_ = 0;
-  std::unique_ptr<std::FILE, Close> file_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE *)> file_{nullptr, std::fclose};
 };
 
 }  // namespace eulastic

@@ -2,14 +2,12 @@
 
 #include "base/events.hpp"
 #include "base/one_line.hpp"
+#include "base/rank_zero.hpp"
 #include "io/text_file.hpp"
 #include "io/vti.hpp"
 
-#include <charconv>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <regex>
-#include <sstream>
 
 namespace eulastic {
 namespace {
@@ -87,42 +85,41 @@ bool is_drawn(const FieldFormat &format) {
   return s[0] + s[1] + s[2] != 1 && format.plane < 0;
 }
 
-}  // namespace
-
-std::string SnapshotWriter::index_entry(const std::string &name, double time,
-                                        const std::vector<SnapshotField> &fields) const {
-  const Int3 &cells = domain_->domain_cells();
+std::string grid_of(const Box &box, const std::string &name, double time, const std::vector<SnapshotField> &fields) {
+  const Int3 &cells = box.domain_cells();
   std::string text = "<Grid Name=\"" + name + "\" GridType=\"Uniform\">\n<Time Value=\"" + format_double(time) +
-                     "\"/>\n" + mesh({cells[0] + 1, cells[1] + 1, cells[2] + 1}, {0, 0, 0}, domain_->spacing(), "\n");
+                     "\"/>\n" + mesh({cells[0] + 1, cells[1] + 1, cells[2] + 1}, {0, 0, 0}, box.spacing(), "\n");
   for (const SnapshotField &field : fields)
     if (is_drawn(field.format)) text += attribute(field.format.name, field, cells, name) + "\n";
   return text + "</Grid>\n";
 }
 
-std::vector<SnapshotEntry> SnapshotWriter::entries() const {
-  static const std::regex entry("<Grid Name=\"([^\"]*)\"[^>]*>\\s*<Time Value=\"([^\"]*)\"");
+// The first `count` snapshots in the index of an earlier run, as far as it is intact.
+std::vector<SnapshotEntry> read_index(const std::string &path, int count) {
   std::vector<SnapshotEntry> entries;
-  for (std::sregex_iterator it(index_.begin(), index_.end(), entry), end; it != end; ++it) {
-    const std::string time = (*it)[2];
-    SnapshotEntry &one = entries.emplace_back(SnapshotEntry{(*it)[1], 0});
-    (void)std::from_chars(time.data(), time.data() + time.size(), one.time);
+  std::string text;
+  (void)read_file_locally(path, &text);
+  const std::string head = index_head("snapshots"), tail = "</Grid>\n";
+  std::size_t begin = text.compare(0, head.size(), head) == 0 ? head.size() : text.size();
+  for (std::size_t end = 0; (end = text.find(tail, begin)) != std::string::npos; begin = end) {
+    int number = 0;
+    double time = 0;
+    end += tail.size();
+    const std::string grid = text.substr(begin, end - begin);
+    const char *const form = "<Grid Name=\"snapshot_%d\" GridType=\"Uniform\"> <Time Value=\"%lf";
+    if (std::sscanf(grid.c_str(), form, &number, &time) != 2 || number >= count) break;
+    entries.push_back({file_name(number), time, grid});
   }
   return entries;
 }
+
+}  // namespace
 
 PetscErrorCode SnapshotWriter::resume(int count, bool same_directory) {
   PetscFunctionBeginUser;
   count_ = count;
   if (!same_directory || domain_->rank() > 0) PetscFunctionReturn(0);
-  std::stringstream text;
-  text << std::ifstream(directory_ + "/snapshots.xdmf").rdbuf();
-  const std::string head = index_head("snapshots"), entry_tail = "</Grid>\n";
-  std::size_t end = text.str().compare(0, head.size(), head) == 0 ? head.size() : 0;
-  for (int n = 0; n < count && end != 0; ++n) {
-    const std::size_t tail = text.str().find(entry_tail, end);
-    end = tail == std::string::npos ? 0 : tail + entry_tail.size();
-  }
-  if (end != 0) index_ = text.str().substr(head.size(), end - head.size());
+  index_ = read_index(directory_ + "/snapshots.xdmf", count);
   std::error_code error;  // one that stays is written over
   for (int n = count; std::filesystem::remove(directory_ + "/" + file_name(n) + ".h5", error); ++n)
     std::filesystem::remove(directory_ + "/" + file_name(n) + ".vti", error);
@@ -150,13 +147,14 @@ PetscErrorCode SnapshotWriter::write(double time, long step, const std::vector<S
   }
   if (vti_) PetscCall(write_vti(*domain_, directory_, name, time, drawn, on_walls));
   ++count_;
-  index_ += index_entry(name, time, fields);
+  index_.push_back({name, time, grid_of(*domain_, name, time, fields)});
+  std::string grids;
+  for (const SnapshotEntry &entry : index_) grids += entry.grid;
   PetscCall(
-      write_text_file(domain_->comm(), directory_ + "/snapshots.xdmf", index_head("snapshots") + index_ + index_tail));
-  const std::vector<SnapshotEntry> all = entries();
-  const std::string walls = wall_index(*domain_, all, fields);
+      write_text_file(domain_->comm(), directory_ + "/snapshots.xdmf", index_head("snapshots") + grids + index_tail));
+  const std::string walls = wall_index(*domain_, index_, fields);
   if (!walls.empty()) PetscCall(write_text_file(domain_->comm(), directory_ + "/walls.xdmf", walls));
-  if (vti_) PetscCall(write_pvd(domain_->comm(), directory_, all));
+  if (vti_) PetscCall(write_pvd(domain_->comm(), directory_, index_));
   PetscFunctionReturn(0);
 }
 

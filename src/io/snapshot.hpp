@@ -13,10 +13,11 @@ struct SnapshotField {
   std::vector<ConstView> components;  ///< one, or three for a vector
 };
 
-/// One snapshot of the index: name of its file without extension, and its time.
+/// One snapshot of the index: name of its file without extension, its time, and its grid in XDMF.
 struct SnapshotEntry {
   std::string name;
   double time;
+  std::string grid;
 };
 
 /// Numbers snapshots from 0 and remembers them for the index.
@@ -26,8 +27,8 @@ public:
   SnapshotWriter(const Domain &domain, std::string directory, bool vti)
       : domain_(&domain), directory_(std::move(directory)), vti_(vti) {}
 
-  /// Collective, before the first write(): goes on after `count` snapshots. Where they are in this directory, the
-  /// index goes on too, and later ones are removed.
+  /// Before the first write(): continues after `count` snapshots. Where they are in this directory, the index continues
+  /// too, and later ones are removed.
   PetscErrorCode resume(int count, bool same_directory);
   void moved_to(const std::string &directory) { directory_ = directory; }
   int count() const { return count_; }
@@ -35,14 +36,11 @@ public:
   PetscErrorCode write(double time, long step, const std::vector<SnapshotField> &fields);
 
 private:
-  std::string index_entry(const std::string &name, double time, const std::vector<SnapshotField> &fields) const;
-  std::vector<SnapshotEntry> entries() const;
-
   const Domain *domain_;
   std::string directory_;
   bool vti_;
   int count_ = 0;
-  std::string index_;  ///< one XDMF grid per snapshot
+  std::vector<SnapshotEntry> index_;  ///< on rank 0
 };
 
 }  // namespace eulastic

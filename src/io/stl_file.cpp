@@ -50,7 +50,7 @@ Solid solid_at(std::ifstream &stream, std::uintmax_t begin, std::uintmax_t size)
 
 std::string read_triangles(std::ifstream &stream, std::size_t count, std::vector<Triangle> *triangles) {
   char bytes[triangle_bytes];
-  if (triangles->size() + count > most_triangles) return "more than 500 million triangles";
+  if (triangles->size() + count > most_triangles) return "has too many triangles; accepted: at most 500 million";
   triangles->reserve(triangles->size() + count);
   for (std::size_t t = 0; t < count; ++t) {
     if (!stream.read(bytes, triangle_bytes)) return "cannot be read";
@@ -182,7 +182,7 @@ std::string read_stl(const std::string &file, std::vector<Triangle> *triangles) 
   const std::uintmax_t size = size_of(file);
   std::string wrong =
       begins_as_text(stream, size) ? AsciiReader(stream).read(triangles) : read_binary(stream, size, triangles);
-  if (wrong.empty() && triangles->empty()) wrong = "has no triangles";
+  if (wrong.empty() && triangles->empty()) wrong = "has no triangles; accepted: the closed surface of a body";
   return wrong.empty() ? wrong : file + ": " + wrong;
 }
 

@@ -29,10 +29,7 @@ std::string write_locally(const std::string &path, const std::string &text) {
   std::FILE *file = std::fopen(temporary_name(path).c_str(), "we");
   if (!file) return complain(path, "create");
   const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  if (std::fclose(file) == 0 && written) return replace_file(path);
-  const std::string problem = complain(path, "write");
-  ::unlink(temporary_name(path).c_str());
-  return problem;
+  return replace_file(path, std::fclose(file) == 0 && written ? "" : complain(path, "write"));
 }
 
 }  // namespace
@@ -44,12 +41,15 @@ std::string format_double(double value) {
 
 std::string temporary_name(const std::string &path) { return path + ".tmp"; }
 
-std::string replace_file(const std::string &path) {
-  if (!sync_path(temporary_name(path), O_RDWR)) return complain(path, "sync");
-  if (std::rename(temporary_name(path).c_str(), path.c_str()) != 0) return complain(path, "rename to");
-  const std::string folder = std::filesystem::path(path).parent_path();
-  (void)sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);  // the file is whole without it
-  return {};
+std::string replace_file(const std::string &path, std::string wrong) {
+  const std::string temporary = temporary_name(path), folder = std::filesystem::path(path).parent_path();
+  if (wrong.empty() && !sync_path(temporary, O_RDWR)) wrong = complain(path, "sync");
+  if (wrong.empty() && std::rename(temporary.c_str(), path.c_str()) != 0) wrong = complain(path, "rename to");
+  if (wrong.empty())
+    (void)sync_path(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);  // the file is whole without it
+  else
+    ::unlink(temporary.c_str());
+  return wrong;
 }
 
 PetscErrorCode write_text_file(MPI_Comm comm, const std::string &path, const std::string &text) {
@@ -70,10 +70,10 @@ void FileStamp::take(const std::string &path) {
 
 std::string FileStamp::difference(const std::string &path) const {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return path + " has vanished while the run went on";
+  if (::stat(path.c_str(), &status) != 0) return path + " was removed by another program during the run";
   if (status.st_dev == device_ && status.st_ino == file_ && status.st_size == bytes_) return {};
-  return path + " was changed by another program while the run went on: " + std::to_string(status.st_size) +
-         " bytes where this one had written " + std::to_string(bytes_);
+  return path + " was changed by another program during the run: it has " + std::to_string(status.st_size) +
+         " bytes, this run had written " + std::to_string(bytes_);
 }
 
 }  // namespace eulastic

@@ -14,8 +14,9 @@ std::string format_double(double value);
 
 /// Where a file lives until it is complete.
 std::string temporary_name(const std::string &path);
-/// Local. Syncs `temporary_name(path)` and renames it to `path`; empty, or one line that says what went wrong.
-std::string replace_file(const std::string &path);
+/// Local. Syncs `temporary_name(path)` and renames it to `path`, or removes it if there is an error: `wrong`, which
+/// says why it is not complete, or one of this. Returns the error, one line, or nothing.
+std::string replace_file(const std::string &path, std::string wrong = {});
 /// Collective; rank 0's `text` is written beside, synced and renamed.
 PetscErrorCode write_text_file(MPI_Comm comm, const std::string &path, const std::string &text);
 

@@ -26,7 +26,7 @@ const double VolumeFile::not_given = std::numeric_limits<double>::quiet_NaN();
 std::string find_volume(const std::string &path, VolumeFormat *format, std::string *file, std::string *dataset) {
   split_dataset(path, file, dataset);
   std::error_code ignored;
-  if (!fs::is_regular_file(*file, ignored)) return *file + " is not a file";
+  if (!fs::is_regular_file(*file, ignored)) return *file + " is not a file; accepted: an HDF5, NRRD or STL file";
   char magic[11] = "";
   std::ifstream stream(*file, std::ios::binary);
   stream.read(magic, sizeof magic - 1);
@@ -39,7 +39,7 @@ std::string find_volume(const std::string &path, VolumeFormat *format, std::stri
   else if (is_stl(*file) || suffix == ".stl")  // the reader says what is wrong with a damaged one
     *format = VolumeFormat::stl;
   else
-    return *file + " is not an HDF5, NRRD or STL file, or its beginning is damaged";
+    return *file + " is not an HDF5, NRRD or STL file, or is damaged at its beginning";
   if (!dataset->empty() && *format != VolumeFormat::hdf5)
     return *file + " has no datasets; accepted: FILE:DATASET for HDF5 only";
   return {};
@@ -66,7 +66,7 @@ std::string VolumeFile::set_count(const std::vector<unsigned long long> &slowest
 std::string VolumeFile::set_spacing(const std::vector<double> &spacing) {
   for (std::size_t d = 0; d < spacing.size(); ++d) {
     if (!std::isfinite(spacing[d]) || spacing[d] <= 0)
-      return file_ + ": spacing in " + "xyz"[d] + " is not a finite number > 0";
+      return file_ + ": spacing in " + "xyz"[d] + " is not positive and finite; accepted: finite numbers > 0";
     spacing_[d] = spacing[d];
   }
   return {};

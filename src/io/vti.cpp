@@ -3,7 +3,7 @@
 #include "io/fail_together.hpp"
 #include "io/text_file.hpp"
 
-#include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,12 +15,6 @@ namespace {
 
 constexpr const char *stress_name = "wall_shear_stress";
 
-struct CellArray {
-  std::string name;
-  Stored stored;
-  std::size_t components;
-};
-
 std::size_t bytes_of(Stored stored) { return stored == Stored::float64 ? 8 : 4; }
 
 const char *vtk_type(Stored stored) {
@@ -31,41 +25,36 @@ const char *vtk_type(Stored stored) {
 class Copy {
 public:
   Copy(const Box &box, const std::vector<SnapshotField> &drawn, const std::vector<SnapshotField> &walls)
-      : cells_(box.domain_cells()), spacing_(box.spacing()), walls_(walls) {
-    for (const SnapshotField &field : drawn)
-      arrays_.push_back({field.format.name, field.format.stored, field.components.size()});
-    bool has_stress = false;
-    for (const CellArray &array : arrays_) has_stress = has_stress || array.name == stress_name;
-    if (!has_stress && !walls.empty()) arrays_.push_back({stress_name, walls[0].format.stored, 3});
+      : cells_(box.domain_cells()), spacing_(box.spacing()), arrays_(drawn), walls_(walls) {
+    const auto is_stress = [](const SnapshotField &array) { return array.format.name == stress_name; };
+    if (walls.empty() || std::any_of(drawn.begin(), drawn.end(), is_stress)) return;
+    arrays_.push_back(walls[0]);
+    arrays_.back().format.name = stress_name;
   }
 
   // Empty, or what went wrong.
   std::string make(const std::string &from, const std::string &to, double time) {
-    const Hdf5Property access(H5Pcreate(H5P_FILE_ACCESS));
-    (void)H5Pset_file_locking(access.get(), false, true);  // the directory is locked
-    from_ = Hdf5FileHandle(H5Fopen(from.c_str(), H5F_ACC_RDONLY, access.get()));
+    from_ = Hdf5FileHandle(H5Fopen(from.c_str(), H5F_ACC_RDONLY, hdf5_local_access().get()));
     if (!from_) return "cannot read " + from;
     to_.reset(std::fopen(temporary_name(to).c_str(), "we"));
     if (!to_) return "cannot create " + to + ": " + std::strerror(errno);
     bool written = write(head(time));
-    for (const CellArray &array : arrays_) written = written && write_array(array);
+    for (const SnapshotField &array : arrays_) written = written && write_array(array);
     written = written && write("\n  </AppendedData>\n</VTKFile>\n");
-    const int reason = errno;
-    if (std::fclose(to_.release()) == 0 && written) return replace_file(to);
-    ::unlink(temporary_name(to).c_str());
-    return "cannot write " + to + ": " + std::strerror(reason);
+    const bool closed = std::fclose(to_.release()) == 0;
+    return replace_file(to, closed && written ? "" : "cannot write " + to + ": " + std::strerror(errno));
   }
 
 private:
-  std::size_t values_of_plane(const CellArray &array) const {
-    return std::size_t(cells_[0]) * std::size_t(cells_[1]) * array.components;
+  std::size_t values_of_plane(const SnapshotField &array) const {
+    return std::size_t(cells_[0]) * std::size_t(cells_[1]) * array.components.size();
   }
-  std::uint64_t bytes_of(const CellArray &array) const {
-    return std::uint64_t(cells_[2]) * values_of_plane(array) * eulastic::bytes_of(array.stored);
+  std::uint64_t bytes_of(const SnapshotField &array) const {
+    return std::uint64_t(cells_[2]) * values_of_plane(array) * eulastic::bytes_of(array.format.stored);
   }
   // Counts of bytes have 4 bytes in files of version 0.1, which older programs read, and 8 in those of version 1.0.
   bool is_large() const {
-    for (const CellArray &array : arrays_)
+    for (const SnapshotField &array : arrays_)
       if (bytes_of(array) > UINT32_MAX) return true;
     return false;
   }
@@ -82,10 +71,10 @@ private:
             format_double(time) + "</DataArray>\n    </FieldData>\n    <Piece Extent=\"" + extent +
             "\">\n      <CellData>\n";
     std::uint64_t offset = 0;
-    for (const CellArray &array : arrays_) {
-      text += std::string("        <DataArray type=\"") + vtk_type(array.stored) + "\" Name=\"" + array.name +
-              "\" NumberOfComponents=\"" + std::to_string(array.components) + "\" format=\"appended\" offset=\"" +
-              std::to_string(offset) + "\"/>\n";
+    for (const SnapshotField &array : arrays_) {
+      text += std::string("        <DataArray type=\"") + vtk_type(array.format.stored) + "\" Name=\"" +
+              array.format.name + "\" NumberOfComponents=\"" + std::to_string(array.components.size()) +
+              "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
       offset += bytes_of(array) + (is_large() ? 8 : 4);
     }
     return text + "      </CellData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _";
@@ -94,23 +83,23 @@ private:
   bool write(const void *data, std::size_t bytes) { return std::fwrite(data, 1, bytes, to_.get()) == bytes; }
   bool write(const std::string &text) { return write(text.data(), text.size()); }
 
-  bool write_array(const CellArray &array) {
+  bool write_array(const SnapshotField &array) {
     const std::uint64_t bytes = bytes_of(array);
     const auto less = static_cast<std::uint32_t>(bytes);
     if (!(is_large() ? write(&bytes, sizeof bytes) : write(&less, sizeof less))) return false;
-    return array.stored == Stored::float32   ? write_planes<float>(array)
-           : array.stored == Stored::float64 ? write_planes<double>(array)
-                                             : write_planes<int>(array);
+    return array.format.stored == Stored::float32   ? write_planes<float>(array)
+           : array.format.stored == Stored::float64 ? write_planes<double>(array)
+                                                    : write_planes<int>(array);
   }
 
   template <class T>
-  bool write_planes(const CellArray &array) {
+  bool write_planes(const SnapshotField &array) {
     std::vector<T> plane(values_of_plane(array));
-    const bool there = H5Lexists(from_.get(), array.name.c_str(), H5P_DEFAULT) > 0;
+    const bool there = H5Lexists(from_.get(), array.format.name.c_str(), H5P_DEFAULT) > 0;
     for (int k = 0; k < cells_[2]; ++k) {
-      if (there && !read(array.name, {k, 0, 0}, {1, cells_[1], cells_[0]}, array, &plane)) return false;
+      if (there && !read(array.format.name, k, cells_[1], cells_[0], array, &plane)) return false;
       if (!there) std::fill(plane.begin(), plane.end(), T{});
-      if (array.name == stress_name)
+      if (array.format.name == stress_name)
         for (const SnapshotField &wall : walls_)
           if (!add_wall(array, wall.format, k, &plane)) return false;
       if (!write(plane.data(), plane.size() * sizeof(T))) return false;
@@ -118,24 +107,23 @@ private:
     return true;
   }
 
-  // A part of a dataset: first index and count along z, y, x.
+  // Reads nx x ny values of plane k of a dataset.
   template <class T>
-  bool read(const std::string &name, const Int3 &first, const Int3 &count, const CellArray &array,
-            std::vector<T> *values) const {
-    hsize_t start[4] = {}, size[4] = {0, 0, 0, array.components};
-    for (int d = 0; d < 3; ++d) start[d] = hsize_t(first[d]), size[d] = hsize_t(count[d]);
+  bool read(const std::string &name, int k, int ny, int nx, const SnapshotField &array, std::vector<T> *values) const {
     const Hdf5Dataset dataset(H5Dopen2(from_.get(), name.c_str(), H5P_DEFAULT));
-    return read_block(dataset.get(), array.components > 1 ? 4 : 3, start, size, values->data());
+    const Hdf5Block plane{
+        array.components.size() > 1 ? 4 : 3, {hsize_t(k)}, {1, hsize_t(ny), hsize_t(nx), array.components.size()}};
+    return read_block(dataset.get(), plane, hdf5_type<T>(), values->data());
   }
 
   // The stress on a wall of the box where it is larger than what the cell beside it holds.
   template <class T>
-  bool add_wall(const CellArray &array, const FieldFormat &wall, int k, std::vector<T> *plane) const {
+  bool add_wall(const SnapshotField &array, const FieldFormat &wall, int k, std::vector<T> *plane) const {
     const int d = wall.plane, edge = wall.plane_high ? cells_[d] - 1 : 0;
     if (d == 2 && k != edge) return true;
     const int nx = d == 0 ? 1 : cells_[0], ny = d == 1 ? 1 : cells_[1];
     std::vector<T> stress(std::size_t(nx) * std::size_t(ny) * 3);
-    if (!read(wall.name, {d == 2 ? 0 : k, 0, 0}, {1, ny, nx}, array, &stress)) return false;
+    if (!read(wall.name, d == 2 ? 0 : k, ny, nx, array, &stress)) return false;
     const auto squared = [](const T *v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
@@ -147,15 +135,11 @@ private:
     return true;
   }
 
-  struct Close {
-    void operator()(std::FILE *file) const { (void)std::fclose(file); }
-  };
   Int3 cells_;
   Real3 spacing_;
-  std::vector<SnapshotField> walls_;
-  std::vector<CellArray> arrays_;
+  std::vector<SnapshotField> arrays_, walls_;
   Hdf5FileHandle from_;
-  std::unique_ptr<std::FILE, Close> to_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE *)> to_{nullptr, std::fclose};
 };
 
 }  // namespace

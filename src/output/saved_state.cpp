@@ -117,14 +117,13 @@ PetscErrorCode require_range(const Domain &domain, const std::string &path, cons
 PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const Domain &domain, BodyTracker *bodies,
                            InletGenerators *generators) {
   const BodyRange own = BodyRange::of(bodies->bodies(), domain.rank(), domain.ranks());
-  const hsize_t all = bodies->bodies(), begin = own.begin;
   std::vector<long> cells(3 * own.size());
   std::vector<double> first_volumes(own.size());
   std::vector<Int3> references(own.size());
   PetscFunctionBeginUser;
-  if (all == 0) PetscFunctionReturn(0);
-  PetscCall(file->read_share("bodies.references", 3 * all, 3 * begin, &cells));
-  PetscCall(file->read_share("bodies.first_volumes", all, begin, &first_volumes));
+  if (bodies->bodies() == 0) PetscFunctionReturn(0);
+  PetscCall(file->read_own("bodies.references", &cells));
+  PetscCall(file->read_own("bodies.first_volumes", &first_volumes));
   PetscCall(require_range(domain, path, find_invalid("the cell of a body", cells, {-1e9, 1e9, "-1e9 ... 1e9"})));
   PetscCall(require_range(domain, path,
                           find_invalid("the first volume of a body", first_volumes,
@@ -134,7 +133,7 @@ PetscErrorCode load_bodies(CheckpointFile *file, const std::string &path, const 
   if (!generators) PetscFunctionReturn(0);
   std::vector<long> stretches(own.size());
   std::map<int, int> inside;
-  PetscCall(file->read_share("bodies_in_feeders", all, begin, &stretches));
+  PetscCall(file->read_own("bodies_in_feeders", &stretches));
   const double count = generators->count();
   PetscCall(
       require_range(domain, path, find_invalid("bodies_in_feeders", stretches, {0, count, "0 ... " + to_text(count)})));
@@ -171,7 +170,7 @@ int pairs_of(const Solver &solver) {
 // Some bodies in boxes for each rank, the same values whoever gets them.
 PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver *solver) {
   const Domain &domain = solver->domain();
-  CheckpointRecords heads{heads_name, FreeBodies::head, {}}, values{values_name, 1, {}};
+  CheckpointRecords heads{heads_name, FreeBodies::head, {}};
   PetscFunctionBeginUser;
   if (!solver->boxed().exist()) PetscFunctionReturn(0);
   PetscCall(file->read_records(&heads));
@@ -190,12 +189,12 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
         FreeBodies::packed_values(domain.domain_shape(), phases[static_cast<int>(head[1])].tensor.centred, head) +
         static_cast<std::size_t>(receptors.values[b]) * Receptor::numbers);
   }
-  values.values.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
-  PetscCall(file->read_own_records(&values));
+  std::vector<double> values(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
+  if (file->has(values_name)) PetscCall(file->read_own(values_name, &values));
   solver->boxed().clear();
   std::vector<std::vector<double>> all;
   std::string wrong;
-  const double *next = values.values.data();
+  const double *next = values.data();
   for (std::size_t b = 0; b < sizes.size(); ++b) {
     const double *head = &heads.values[b * FreeBodies::head];
     std::vector<double> &packed = all.emplace_back(head, head + FreeBodies::head);
@@ -289,9 +288,9 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   InletGenerators *generators = solver->part<InletGenerators>();
   std::vector<long> forgotten, like;
   PetscFunctionBeginUser;
-  PetscCall(file->read_if_there("forgotten", &forgotten));
+  if (file->has("forgotten")) PetscCall(file->read_array("forgotten", &forgotten));
   if (generators) {
-    PetscCall(file->read_if_there("bodies_like", &like));
+    if (file->has("bodies_like")) PetscCall(file->read_array("bodies_like", &like));
     solver->bodies().set_like({});
     PetscCall(require_range(domain, path, find_invalid_link(like, solver->bodies().bodies())));
     solver->bodies().set_like(like);

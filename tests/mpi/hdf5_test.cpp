@@ -95,7 +95,7 @@ TEST(Hdf5, DamageIsAnError) {
     Hdf5File out;
     ASSERT_EQ(out.create(run_communicator(), path), 0);
     ASSERT_EQ(out.write_field(scene.domain, {"q"}, {block[0]}), 0);
-    ASSERT_EQ(out.write_array("numbers", {3}, std::vector<double>{1, 2, 3}), 0);
+    ASSERT_EQ(out.write_array("numbers", std::vector<double>{1, 2, 3}), 0);
     ASSERT_EQ(out.commit(), 0);
   }
   const std::string good = text_of(path);
@@ -114,28 +114,27 @@ TEST(Hdf5, DamageIsAnError) {
   const auto read = [&] {
     PetscFunctionBeginUser;
     Hdf5File in;
-    std::vector<hsize_t> shape;
     std::vector<double> numbers;
     PetscCall(in.open(run_communicator(), path));
     PetscCall(in.read_field(scene.domain, "q", at_centre, block[0]));
-    PetscCall(in.read_array("numbers", &shape, &numbers));
+    PetscCall(in.read_array("numbers", &numbers));
     EXPECT_EQ(numbers, (std::vector<double>{1, 2, 3}));
     const BodyRange own = BodyRange::of(3, world_rank(), scene.domain.ranks());
     std::vector<double> mine(own.size());
-    PetscCall(in.read_share("numbers", 3, own.begin, &mine));
+    PetscCall(in.read_own("numbers", &mine));
     EXPECT_EQ(mine, (std::vector<double>{numbers.begin() + own.begin, numbers.begin() + own.end}));
     PetscFunctionReturn(0);
   };
   EXPECT_EQ(error_of(read), "no error");
   for (const int bit : {0, 13, 63}) {
     rewrite(flipped(value_at(3, 11, 5), bit));
-    EXPECT_EQ(error_of(read), path + ": dataset q is damaged (its checksum differs)");
+    EXPECT_EQ(error_of(read), path + ": dataset q is damaged: its values do not have its checksum");
   }
   rewrite(flipped(3.0, 1));
-  EXPECT_EQ(error_of(read), path + ": dataset numbers is damaged (its checksum differs)");
+  EXPECT_EQ(error_of(read), path + ": dataset numbers is damaged: its values do not have its checksum");
   for (const std::size_t length : {good.size() - 1, good.size() / 2, std::size_t(100), std::size_t(0)}) {
     rewrite(good.substr(0, length));
-    EXPECT_NE(error_of(read).find(path + ": not an HDF5 file, or a damaged or truncated one"), std::string::npos);
+    EXPECT_NE(error_of(read).find(path + ": is not an HDF5 file, or is damaged or truncated"), std::string::npos);
   }
   rewrite(good);
   EXPECT_EQ(error_of(read), "no error");
@@ -151,7 +150,7 @@ TEST(Hdf5, WrongInputIsNamed) {
     Hdf5File out;
     ASSERT_EQ(out.create(run_communicator(), path), 0);
     ASSERT_EQ(out.write_field(scene.domain, {"q"}, {source[0]}), 0);
-    ASSERT_EQ(out.write_array("numbers", {2, 2}, std::vector<long>{1, 2, 3, 4}), 0);
+    ASSERT_EQ(out.write_array("numbers", std::vector<long>{1, 2, 3, 4}), 0);
     ASSERT_EQ(out.write_attribute("/", "version", std::string("1.2")), 0);
     ASSERT_EQ(out.commit(), 0);
   }
@@ -164,18 +163,21 @@ TEST(Hdf5, WrongInputIsNamed) {
             path + ": dataset q is 7 x 13 x 5, the grid needs 7 x 14 x 5 (nz, ny, nx)");
   EXPECT_EQ(reading(other.domain, "p", at_centre, block), path + ": there is no dataset p");
   EXPECT_EQ(reading(other.domain, "numbers", at_centre, block),
-            path + ": dataset numbers is 2 x 2, the grid needs 7 x 14 x 5 (nz, ny, nx)");
+            path + ": dataset numbers is 4, the grid needs 7 x 14 x 5 (nz, ny, nx)");
   // One point more is the high wall only where there is one and the field is staggered towards it.
   EXPECT_NE(reading(periodic.domain, "q", at_face[0], narrow), "no error");
   double number;
   EXPECT_EQ(error_of([&] { return in.read_attribute("/", "time", &number); }),
             path + ": there is no attribute time of /");
   EXPECT_NE(error_of([&] { return in.read_attribute("/", "version", &number); }), "no error");
-  std::vector<hsize_t> shape;
   std::vector<long> numbers;
-  ASSERT_EQ(in.read_array("numbers", &shape, &numbers), 0);
-  EXPECT_EQ(shape, (std::vector<hsize_t>{2, 2}));
+  ASSERT_EQ(in.read_array("numbers", &numbers), 0);
   EXPECT_EQ(numbers, (std::vector<long>{1, 2, 3, 4}));
+  EXPECT_EQ(error_of([&] { return in.read_array("q", &numbers); }),
+            path + ": dataset q is 7 x 13 x 5; accepted: a list");
+  numbers.resize(5);
+  EXPECT_NE(error_of([&] { return in.read_own("numbers", &numbers); }).find("belongs to another case: it is 4, this"),
+            std::string::npos);
   Hdf5File missing, nowhere;
   EXPECT_NE(
       error_of([&] { return missing.open(run_communicator(), directory / "none.h5"); }).find("none.h5: No such file"),

@@ -84,15 +84,15 @@ void check_snapshot(const Int3 &cells, int phase_count) {
   Hdf5File file;
   ASSERT_EQ(file.open(run_communicator(), directory / "snapshot_000001.h5"), 0);
   double time, step;
-  std::vector<double> spacing, length;
+  Real3 spacing, length;
   ASSERT_EQ(file.read_attribute("/", "time", &time), 0);
   ASSERT_EQ(file.read_attribute("/", "step", &step), 0);
-  ASSERT_EQ(file.read_attribute("/", "spacing", &spacing), 0);
-  ASSERT_EQ(file.read_attribute("/", "length", &length), 0);
+  ASSERT_EQ(file.read_attribute("/", "spacing", spacing.data(), 3), 0);
+  ASSERT_EQ(file.read_attribute("/", "length", length.data(), 3), 0);
   EXPECT_EQ(time, 0.5);
   EXPECT_EQ(step, 10);
-  EXPECT_EQ(spacing, std::vector<double>(scene.domain.spacing().begin(), scene.domain.spacing().end()));
-  EXPECT_EQ(length, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(spacing, scene.domain.spacing());
+  EXPECT_EQ(length, (Real3{1, 2, 3}));
 
   const auto first_value = [&](const std::string &name, const Staggering &s) {
     read.fill(0, -1);
@@ -157,6 +157,27 @@ TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
   EXPECT_NE(list.find("timestep=\"0\" part=\"0\" file=\"snapshot_000000.vti\""), std::string::npos) << list;
   EXPECT_NE(list.find("timestep=\"0.25\" part=\"0\" file=\"snapshot_000001.vti\""), std::string::npos) << list;
   EXPECT_EQ(list.find("000002"), std::string::npos) << list;
+}
+
+// A run that was restarted into a directory of its own begins there with a later number.
+TEST(Snapshot, TheIndexKeepsAllOfItsDirectory) {
+  const SharedDirectory directory;
+  const NumberedFields scene({5, 13, 7});
+  const Field pressure(scene.domain, 1);
+  SnapshotField field;
+  field.format.name = "pressure";
+  field.components = {pressure[0]};
+  SnapshotWriter first(scene.domain, directory / "", true), second(scene.domain, directory / "", true);
+  ASSERT_EQ(first.resume(3, false), 0);
+  for (int n = 3; n < 6; ++n) ASSERT_EQ(first.write(n, n, {field}), 0);
+  ASSERT_EQ(second.resume(5, true), 0);
+  ASSERT_EQ(second.write(5.5, 9, {field}), 0);
+  check_index(directory, 3);
+  const std::string list = text_of(directory / "snapshots.pvd");
+  for (const char *entry :
+       {"\"3\" part=\"0\" file=\"snapshot_000003.vti\"", "\"4\" part=\"0\" file=\"snapshot_000004.vti\"",
+        "\"5.5\" part=\"0\" file=\"snapshot_000005.vti\""})
+    EXPECT_NE(list.find(entry), std::string::npos) << entry;
 }
 
 TEST(Snapshot, OnePhase) { check_snapshot({5, 13, 7}, 1); }

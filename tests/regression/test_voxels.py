@@ -282,7 +282,7 @@ class Voxels(WithRoom):
         for values, says, at in [
                 (bad, ["[7, 9, 11] is 1.5", "0 ... 1"], {}), (-good, ["is -0.5"], {}), (nan, ["[1, 2, 3] is nan"], {}),
                 (good[0, 0], ["1 dimensions"], {}), (good[None], ["4 dimensions"], {}),
-                (numpy.zeros((0, 3, 3)), ["no values"], {}), (good.astype("c16"), ["floats"], {}),
+                (numpy.zeros((0, 3, 3)), ["no values"], {}), (good.astype("c16"), ["floating-point numbers"], {}),
                 (numpy.zeros(SHAPE), ["nothing solid"], {}), (good, ["spacing"], {"spacing": [1, 1]}),
                 (good, ["spacing"], {"spacing": [.1, 0, .1]}), (good, ["spacing"], {"spacing": "three"}),
                 (good, ["origin"], {"origin": [0, 0, numpy.inf]}),
@@ -330,7 +330,7 @@ class Voxels(WithRoom):
         packed, plain, words = (nrrd(good, e) for e in ("gzip", "raw", "ascii"))
         for content, says in ((plain[:-1], "do not fit"), (packed[:-12], "truncated"), (packed[:-3], "truncated"),
                               (packed[:-6] + b"?" + packed[-5:], "damaged"), (plain[:40], "header has no end"),
-                              (words.replace(b"0.5\n", b"x\n"), "no number"), (words[:-5], "too early"),
+                              (words.replace(b"0.5\n", b"x\n"), "not a number"), (words[:-5], "too early"),
                               (plain.replace(b"g: raw", b"g: gzip"), "not packed by gzip")):
             with self.subTest(says):
                 self.refused(*RUN, *BODY, self.write("v.nrrd", content), says=["v.nrrd", says])
