@@ -48,7 +48,8 @@ struct Film {
   // Minus the power of the force, and the stored energy.
   std::array<double, 2> energy(const Field &velocity) {
     ExactSums sums(2);
-    film.add_energy(phase, velocity, 0, 1, &sums);
+    film.add_power(phase, velocity, 0, &sums);
+    film.add_energy(phase, 1, &sums);
     std::array<double, 2> found{};
     EXPECT_EQ(sums.reduce(PETSC_COMM_SELF, found.data()), 0);
     return found;
