@@ -5,6 +5,7 @@
 #include "diagnostics/edge_stress.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace eulastic {
@@ -68,6 +69,7 @@ private:
             force[a] = -side * part * share;
             add(of, owner, place, force);
           }
+          end_point();
         });
   }
 
@@ -96,6 +98,7 @@ private:
           force[b] = (low_a ? whole : -whole) * part * volume_of_face(box, b, cell) / box.spacing()[a];
           add(of, owner, place, force);
         }
+      end_point();
     });
   }
 
@@ -115,12 +118,14 @@ private:
     return box.is_wall(a) && (at == 0 || at == box.domain_cells()[a]) ? 0.5 : 1;
   }
 
-  // Adds a force and its torque. `place`: where it acts, in cells from the centre of the cell whose phi it belongs to.
+  // Adds a force and its torque to those of the same body at this point. `place`: where it acts, in cells from the
+  // centre of the cell whose phi it belongs to.
   void add(const Surface &of, const Int3 &cell, const Real3 &place, const Real3 &force) {
     const Box &box = of.box;
     const auto label = static_cast<std::size_t>(of.label(cell[0], cell[1], cell[2]));
     if (force == Real3{} || label >= index_.size() || index_[label] < 0) return;
-    const int first = per_body * index_[label];
+    if (index_[label] != body_) end_point();
+    body_ = index_[label];
     Real3 arm{};
     for (int d = 0; d < box.dimension(); ++d) {
       const double h = box.spacing()[d], length = box.domain_shape().length[d];
@@ -130,15 +135,24 @@ private:
     }
     for (int d = 0; d < 3; ++d) {
       const int e = (d + 1) % 3, g = (d + 2) % 3;
-      if (force[d] != 0) sums_.add(first + d, force[d]);
-      if (force[e] != 0 || force[g] != 0) sums_.add(first + 3 + d, arm[e] * force[g] - arm[g] * force[e]);
+      load_[d] += force[d];
+      load_[3 + d] += arm[e] * force[g] - arm[g] * force[e];
     }
+  }
+
+  void end_point() {
+    for (int s = 0; s < per_body && body_ >= 0; ++s)
+      if (load_[s] != 0) sums_.add(per_body * body_ + s, load_[s]);
+    body_ = -1;
+    load_ = {};
   }
 
   const std::vector<SurfaceLoad> &loads_;
   ExactSums sums_;
   std::vector<int> index_;  ///< index in loads_ of every label, -1: none
   std::vector<unsigned char> flags_;
+  int body_ = -1;                        ///< index in loads_ of the body at the present point, -1: none
+  std::array<double, per_body> load_{};  ///< on it
 };
 
 }  // namespace

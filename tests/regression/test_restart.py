@@ -71,6 +71,12 @@ class SameBits(Restart):
                                                           "-bead_stretch_force .2 -bead_stretch_volume_fraction .1")
         self.check(case.split() + FLAT[-4:], [], before=2, after=3)
 
+    def test_membrane(self):
+        """A row of every step: those that the restart computes anew have the bits of those that come with the forces."""
+        case = " ".join(FLAT[:FLAT.index("-bead_law")]) + (" -bead_law membrane -bead_surface_shear_modulus .5 "
+                                                          "-bead_bending_modulus .01")
+        self.check(case.split() + FLAT[-4:-1] + ["1e-9"], [], before=2, after=3)
+
     def test_flat_viscosities(self):
         self.check(FLAT, "-cell_viscosity 1.5 -bead_viscosity .03".split(), before=2, after=3)
 
