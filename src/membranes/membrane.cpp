@@ -379,8 +379,8 @@ double smoothed_delta(const Box &box, ConstView psi, std::ptrdiff_t at) {
 
 }  // namespace
 
-std::vector<SurfaceSample> MembraneMechanics::sample(const Phase &phase, const std::vector<double> &bending_energy,
-                                                     const std::vector<int> &labels) const {
+std::vector<SurfaceSample> MembraneMechanics::sample(const Phase &phase,
+                                                     const std::vector<double> &bending_energy) const {
   const Box &box = *place_.box;
   const double volume = box.cell_volume();
   std::vector<SurfaceSample> samples;
@@ -390,7 +390,7 @@ std::vector<SurfaceSample> MembraneMechanics::sample(const Phase &phase, const s
     if (!cell.owned) continue;
     const Energies energies = box.dimension() == 2 ? energies_at<2>(phase, cell) : energies_at<3>(phase, cell);
     const double bending = bending_energy[c] > 0 ? bending_energy[c] * smoothed_delta(box, smooth(), cell.at) : 0;
-    samples.push_back({labels.empty() ? 0 : labels[c],
+    samples.push_back({0,
                        cell.place,
                        cell.delta,
                        energies.rest,
@@ -419,11 +419,14 @@ PetscErrorCode MembraneMechanics::measure(const Phase &phase, const Field &veloc
   EventScope scope(Event::sums);
   film.add_power(phase, velocity, power, &sum->front());
   film.add_energy(phase, stored, &sum->front());
-  std::vector<int> labels;
-  if (samples && phase.label) PetscCall(surface_.find_labels(phase, surface_fields_, &labels));
-  std::vector<SurfaceSample> found = sample(phase, bending, labels);
+  std::vector<SurfaceSample> found = sample(phase, bending);
   add_stored_energy(found, place_.box->cell_volume(), &sum->front());
-  if (labels.empty()) PetscFunctionReturn(0);
+  if (!samples || !phase.label) PetscFunctionReturn(0);
+  std::vector<int> labels;
+  PetscCall(surface_.find_labels(phase, surface_fields_, &labels));  // overwrites fields that sample() reads
+  std::size_t next = 0;
+  for (std::size_t c = 0; c < labels.size(); ++c)
+    if (surface_.all()[c].owned) found[next++].label = labels[c];
   set_velocities(velocity, &found);
   samples->insert(samples->end(), found.begin(), found.end());
   PetscFunctionReturn(0);

@@ -49,10 +49,9 @@ public:
   /// Calls `use` for the forces of stress and bending. `bending_energy`: energy per area at each cell of surface().
   PetscErrorCode for_force_rows(const Phase &phase, const ForceRow &use, std::vector<double> *bending_energy = nullptr);
   enum Sum { power, stored, sums };
-  /// Returns samples of all owned surface cells, without velocities. `bending_energy`: from for_force_rows(); `labels`:
-  /// of the bodies at the cells of surface(), or empty.
-  std::vector<SurfaceSample> sample(const Phase &phase, const std::vector<double> &bending_energy,
-                                    const std::vector<int> &labels = {}) const;
+  /// Returns samples of all owned surface cells, without labels and velocities. `bending_energy`: from
+  /// for_force_rows().
+  std::vector<SurfaceSample> sample(const Phase &phase, const std::vector<double> &bending_energy) const;
   /// Adds the power that the flow supplies to the phase and the stored energy, both divided by the cell volume, to the
   /// sums of each row part. Adds samples of all owned surface cells to `samples`, unless it is null, if bodies have
   /// labels.

@@ -22,6 +22,7 @@ import synthetic_run  # noqa: E402
 from eulastic import Run, derived, is_finished, scene, surfaces  # noqa: E402
 from eulastic.labels import Units  # noqa: E402
 from eulastic.option_files import parse_options  # noqa: E402
+from load_script import load  # noqa: E402, F401  # for other tests
 
 
 def listing(folder):
