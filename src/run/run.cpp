@@ -138,6 +138,19 @@ PetscErrorCode accept(Run *run) {
   PetscFunctionReturn(0);
 }
 
+// Returns what looks at a step of length dt for the row that waits, if there is one. Adds the time that it takes to
+// `looked`.
+Observer observer(Run *run, double dt, PetscErrorCode (Outputs::*see)(double), double *looked) {
+  if (!run->outputs.row_waits()) return {};
+  return [=] {
+    const double begin = MPI_Wtime();
+    PetscFunctionBeginUser;
+    PetscCall((run->outputs.*see)(dt));
+    *looked += MPI_Wtime() - begin;
+    PetscFunctionReturn(0);
+  };
+}
+
 PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progress *progress, Run *run) {
   PetscFunctionBeginUser;
   Solver &solver = run->solver;
@@ -161,21 +174,12 @@ PetscErrorCode time_loop(const Config &config, TimeStepControl *control, Progres
     if (run->stop) break;
     step_begin = MPI_Wtime();
     double looked = 0;
-    const auto timed = [&](PetscErrorCode (Outputs::*see)(double)) -> Observer {
-      if (!run->outputs.row_waits()) return {};
-      return [&, see] {
-        const double begin = MPI_Wtime();
-        PetscFunctionBeginUser;
-        PetscCall((run->outputs.*see)(dt));
-        looked += MPI_Wtime() - begin;
-        PetscFunctionReturn(0);
-      };
-    };
     run->outputs.prepare_step(dt);
     {
       StageScope stage(Stage::step);
       PetscCall(control->reset_unresolved(&solver, &warning));
-      PetscCall(solver.step(dt, timed(&Outputs::record_middle), timed(&Outputs::record_pressure)));
+      PetscCall(solver.step(dt, observer(run, dt, &Outputs::record_middle, &looked),
+                            observer(run, dt, &Outputs::record_pressure, &looked)));
     }
     print_warning(solver.domain().comm(), warning);
     run->position.wall_seconds += MPI_Wtime() - step_begin - looked;

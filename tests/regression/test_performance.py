@@ -28,7 +28,7 @@ class Performance(WithFolder):
         marks = set(re.findall("<!-- table (\\w+) -->", keep.read_text()))
         self.assertEqual(marks, {"work_precision", "ablation", "rate", "paper_table1", "verbs", "two_cores",
                                  "cost_of_bodies", "small_body", "memory", "crowd", "time_steps", "capsules",
-                                 "kinds_of_cells", "race", "rigid_tubes", "cost_of_output"})
+                                 "kinds_of_cells", "viscous_schemes", "race", "rigid_tubes", "cost_of_output"})
 
     def test_error_in_time(self):
         steps = load("studies/performance/time_steps")
