@@ -10,6 +10,7 @@
 #include "scene/voxels.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -127,6 +128,22 @@ PetscErrorCode count_bodies(MPI_Comm comm, int bodies, std::vector<int> *labels,
   PetscFunctionReturn(0);
 }
 
+// The first of the pairs that ranks have found, those at the same place before all others.
+PetscErrorCode agree(MPI_Comm comm, Overlap *first) {
+  PetscFunctionBeginUser;
+  const std::array<int, 4> mine{first->body == 0, !first->same_place, first->body, first->other};
+  std::array<int, 4> least{};
+  for (std::size_t n = 0; n < mine.size(); ++n) {  // of the ranks that have the least of all before it
+    const bool last = !std::equal(mine.begin(), mine.begin() + n, least.begin());
+    const int value = last ? std::numeric_limits<int>::max() : mine[n];
+    PetscCallMPI(MPI_Allreduce(&value, &least[n], 1, MPI_INT, MPI_MIN, comm));
+  }
+  double volume = mine == least ? first->volume : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPI_DOUBLE, MPI_MAX, comm));
+  *first = {least[2], least[3], volume, least[1] == 0};
+  PetscFunctionReturn(0);
+}
+
 }  // namespace
 
 PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *warning, std::string *refusal) {
@@ -156,9 +173,7 @@ PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *wa
   for (std::size_t s = 0; s < near.size(); ++s)
     if (is_file(config.species[s]))
       PetscCall(compare_with_file(comm, config, {config.grid, box.begin, box.cells}, near, s, &overlaps, &first));
-  std::vector<Overlap> of_ranks{first};
-  PetscCall(gather_all(comm, &of_ranks));
-  first = *std::min_element(of_ranks.begin(), of_ranks.end(), is_before);
+  PetscCall(agree(comm, &first));
   long count;
   PetscCall(count_bodies(comm, first_labels(config.species, config.places).back() - 1, &overlaps, &count));
   if (first.same_place)

@@ -51,7 +51,6 @@ GROW_WITH_RANKS = {("Main Stage", "", "Allgather"): 4}
 # where there are several bodies, which may overlap or be near.
 GROW_WITH_BODIES = {
     ("Main Stage", "", "Barrier"): (None, 0),
-    ("Output", "EulWrite", "Scan"): (None, 8),  # of boxes in a checkpoint
     ("Setup", "", "Allgather"): (None, 16 * 8),  # what each rank has to do: bodies are shared out
     ("Setup", "", "Allreduce"): (4, 16),  # whether all boxes still fit, and where strain was lost
 }
