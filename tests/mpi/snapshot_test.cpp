@@ -140,14 +140,21 @@ void check_snapshot(const Int3 &cells, int phase_count) {
         }
 }
 
-TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
+// Two runs, one after the other, with snapshots of the pressure in one directory.
+class SnapshotRuns : public testing::Test {
+protected:
+  SnapshotRuns() {
+    field.format.name = "pressure";
+    field.components = {pressure[0]};
+  }
   const SharedDirectory directory;
-  const NumberedFields scene({5, 13, 7});
-  const Field pressure(scene.domain, 1);
+  const NumberedFields scene{{5, 13, 7}};
+  const Field pressure{scene.domain, 1};
   SnapshotField field;
-  field.format.name = "pressure";
-  field.components = {pressure[0]};
-  SnapshotWriter first(scene.domain, directory / "", true), second(scene.domain, directory / "", true);
+  SnapshotWriter first{scene.domain, directory / "", true}, second{scene.domain, directory / "", true};
+};
+
+TEST_F(SnapshotRuns, LaterOnesOfAnEarlierRunAreRemoved) {
   for (int n = 0; n < 4; ++n) ASSERT_EQ(first.write(n, n, {field}), 0);
   ASSERT_EQ(second.resume(1, true), 0);
   ASSERT_EQ(second.write(0.25, 9, {field}), 0);
@@ -160,14 +167,7 @@ TEST(Snapshot, LaterOnesOfAnEarlierRunAreRemoved) {
 }
 
 // A run that was restarted into a directory of its own begins there with a later number.
-TEST(Snapshot, TheIndexKeepsAllOfItsDirectory) {
-  const SharedDirectory directory;
-  const NumberedFields scene({5, 13, 7});
-  const Field pressure(scene.domain, 1);
-  SnapshotField field;
-  field.format.name = "pressure";
-  field.components = {pressure[0]};
-  SnapshotWriter first(scene.domain, directory / "", true), second(scene.domain, directory / "", true);
+TEST_F(SnapshotRuns, TheIndexKeepsAllOfItsDirectory) {
   ASSERT_EQ(first.resume(3, false), 0);
   for (int n = 3; n < 6; ++n) ASSERT_EQ(first.write(n, n, {field}), 0);
   ASSERT_EQ(second.resume(5, true), 0);
