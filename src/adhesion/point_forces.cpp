@@ -29,7 +29,7 @@ PetscErrorCode PointForces::set(std::vector<PointForce> forces) {
   }
   PetscCall(send_to_ranks(domain.comm(), to, &forces_));
   std::sort(forces_.begin(), forces_.end(), [](const PointForce &one, const PointForce &other) {
-    return std::tie(one.body, one.receptor, one.end) < std::tie(other.body, other.receptor, other.end);
+    return std::tie(one.body, one.receptor, one.point) < std::tie(other.body, other.receptor, other.point);
   });
   PetscFunctionReturn(0);
 }

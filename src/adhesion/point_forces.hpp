@@ -10,9 +10,10 @@ namespace eulastic {
 
 struct PointForce {
   int body, receptor;  ///< receptor of the bond
-  int end;             ///< end of the bond: 0 the receptor, 1 a surface on the grid
+  int point;           ///< where it acts: on_surface, or a point of the receptor's attachment
   Real3 place;         ///< need not be wrapped into the domain
   Real3 force;
+  static constexpr int on_surface = -1;  ///< at the other end of the bond, on a surface on the grid
 };
 
 /// The point forces that act on the faces of this rank, in an order that does not depend on the ranks they come from.

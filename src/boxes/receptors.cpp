@@ -77,6 +77,30 @@ Real3 wide_slope(const Box &box, const Phase &phase, const Real3 &place) {
   return slope;
 }
 
+double size_of(const Real3 &v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+double shortest_spacing(const Box &box) {
+  return *std::min_element(box.spacing().begin(), box.spacing().begin() + box.dimension());
+}
+
+// Interpolates phi near the surface; its gradient is that over two cells where the nearest points have none.
+Level surface_level_at(const Box &box, const Phase &phase, const Real3 &place) {
+  Level level = level_at(box, phase, place);
+  if (!(size_of(level.slope) * shortest_spacing(box) > 1e-3)) level.slope = wide_slope(box, phase, place);
+  return level;
+}
+
+// Interpolates the velocity at a receptor from its attachment, moved by an offset.
+Real3 velocity_of(const Box &box, const Field &velocity, const Attachment &attachment, const Real3 &offset) {
+  Real3 sum{};
+  for (const auto &[place, weight] : attachment) {
+    const Real3 at{place[0] + offset[0], place[1] + offset[1], place[2] + offset[2]};
+    const Real3 here = velocity_at(box, velocity, at);
+    for (int d = 0; d < 3; ++d) sum[d] += weight * here[d];
+  }
+  return sum;
+}
+
 // Returns the area of the surface in a cell: |grad phi| integrated over it, by differences over two cells.
 double area_in_cell(const BodyInBox &body, int i, int j, int k) {
   const ConstView phi = std::as_const(body.phase->fraction)[0];
@@ -90,17 +114,29 @@ double area_in_cell(const BodyInBox &body, int i, int j, int k) {
 }  // namespace
 
 Real3 way_to_surface(const Box &box, const Phase &phase, const Real3 &place) {
-  Level level = level_at(box, phase, place);
-  const Real3 &h = box.spacing();
-  const double shortest = *std::min_element(h.begin(), h.begin() + box.dimension());
-  const auto size_of = [](const Real3 &v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
-  if (!(size_of(level.slope) * shortest > 1e-3)) level.slope = wide_slope(box, phase, place);
-  const double steepness = size_of(level.slope);
+  const Level level = surface_level_at(box, phase, place);
+  const double shortest = shortest_spacing(box), steepness = size_of(level.slope);
   if (!(steepness * shortest > 1e-3)) return {};
   const double most = 0.25 * shortest, far = std::clamp((0.5 - level.phi) / steepness, -most, most);
   Real3 way{};
   for (int d = 0; d < box.dimension(); ++d) way[d] = far * level.slope[d] / steepness;
   return way;
+}
+
+// Less deep, a part of the velocity is that of the fluid beside the surface, with which receptors slip along the body.
+Attachment attachment_of(const Box &box, const Phase &phase, const Real3 &place) {
+  constexpr double near = 1, far = 2;  // cells below the surface
+  const Material &material = phase.material;
+  const Real3 slope = surface_level_at(box, phase, place).slope;
+  const double steepness = size_of(slope);
+  if (!material.elastic() || material.is_membrane() || !(steepness > 0)) return {{{{place, 1}}}, 1};
+  Attachment attachment{{{{place, far / (far - near)}, {place, -near / (far - near)}}}, 2};
+  const double cell = shortest_spacing(box) / steepness;
+  for (int d = 0; d < box.dimension(); ++d) {
+    attachment.points[0].place[d] += near * cell * slope[d];
+    attachment.points[1].place[d] += far * cell * slope[d];
+  }
+  return attachment;
 }
 
 void place_receptors(const BodyInBox &body, double density, std::uint32_t seed, std::vector<Receptor> *receptors) {
@@ -133,10 +169,11 @@ void place_receptors(const BodyInBox &body, double density, std::uint32_t seed, 
 void move_receptors(const Box &box, double dt, const Field &velocity, const Phase &phase,
                     std::vector<Receptor> *receptors) {
   for (Receptor &receptor : *receptors) {
-    Real3 &place = receptor.place, half = place;
-    const Real3 first = velocity_at(box, velocity, place);
-    for (int d = 0; d < 3; ++d) half[d] += 0.5 * dt * first[d];
-    const Real3 second = velocity_at(box, velocity, half);
+    Real3 &place = receptor.place;
+    const Attachment attachment = attachment_of(box, phase, place);
+    Real3 half = velocity_of(box, velocity, attachment, {});
+    for (double &way : half) way *= 0.5 * dt;
+    const Real3 second = velocity_of(box, velocity, attachment, half);
     for (int d = 0; d < box.dimension(); ++d) {
       place[d] += dt * second[d];
       if (box.is_wall(d)) place[d] = std::clamp(place[d], 0.0, box.domain_shape().length[d]);

@@ -37,9 +37,32 @@ class AdhesionStudy(WithFolder):
         self.assertEqual([row[0] for row in rows], ["2500", "40000"], made)
         self.assertGreater(float(rows[1][1]), 5 * float(rows[0][1]))
         self.assertGreater(float(rows[1][3]), float(rows[0][3]))
-        for name in ("tether", "detachment", "arrest"):
+        self.assertRegex(made, r"(?m)^\| 0.8 \| [\d.]+ \| \d+ \| holds \| holds \|$")
+        broken = re.search(r"^\| 1.2 \| [\d.]+ \| \d+ \| (\d+) \| (\d+) \|$", made, re.MULTILINE)
+        self.assertTrue(0.95 < int(broken[1]) / int(broken[2]) < 1.25, made)
+        for name in ("tether", "threshold", "detachment", "arrest"):
             self.assertTrue((self.folder / f"adhesion_{name}.png").exists(), name)
         self.check_bonds(self.folder / "tether_4")
+
+    @full
+    def test_tethered_sphere_comes_to_rest(self):
+        """With 4 cells per radius: held by its bonds the sphere neither slips nor turns, and they carry the drag and the torque of a
+        rigid sphere within the error of this grid, of first order."""
+        study = load("studies/adhesion/adhesion_study")
+        case = study.sphere(4, self.folder / "held", study.START, *study.TETHERS.split(), "-time_end", "16")
+        height, speed = case.bodies.centroid[-1, 0, 1], case.bodies.velocity[-1, 0, 0]
+        fixed = study.sphere(4, self.folder / "fixed", height, "-ball_law", "rigid", "-time_end", "5")
+        force, torque = study.pull(case)
+        self.assertLess(abs(speed / (study.SHEAR * height)), 0.04)
+        self.assertLess(abs(-force[0] / fixed.bodies.force[-1, 0, 0] - 1), 0.06)
+        self.assertLess(abs(abs(torque[2] / fixed.bodies.torque[-1, 0, 2]) - 1), 0.1)
+
+    def test_threshold_of_bell(self):
+        """0.7178 N_0/x at k_on/k_off = 4; the rate equation without force keeps four fifths of the bonds, with far too much force none."""
+        study = load("studies/adhesion/adhesion_study")
+        self.assertAlmostEqual(study.largest_force(1000) * study.COMPLIANCE / 1000, 0.7178, places=4)
+        self.assertEqual(study.rupture_time(1000, 0), numpy.inf)
+        self.assertLess(study.rupture_time(1000, 3 * study.largest_force(1000)), study.PULSE / 4)
 
     def check_bonds(self, directory):
         """All tables agree with each other; without the bonds the picture is another one."""
