@@ -1,6 +1,7 @@
 // Lists, row by row, the runs of cells on which a routine has to work.
 #pragma once
 
+#include "grid/bit_rows.hpp"
 #include "grid/box.hpp"
 #include "grid/occupied_rows.hpp"
 
@@ -51,9 +52,11 @@ public:
 
 private:
   void reset(const Int3 &begin, const Int3 &end);
-  template <class Flag>
-  void build_rows(const Box &box, ConstView value, const OccupiedRows &rows, Flag flag, int wanted, int low, int high);
-  void append_row(const unsigned char *marked, int j, int k, std::vector<Segment> *segments) const;
+  /// Words of a row of points whose first bit is at a multiple of 8 points.
+  int words() const noexcept { return BitRows::words_for((begin_[0] & 7) + points_x_); }
+  template <class... Tests>
+  void build_near(const Box &box, ConstView value, const OccupiedRows &rows, int low, int high, const Tests &...tests);
+  void append_row(const BitRows::Word *marked, int j, int k, std::vector<Segment> *segments) const;
   template <class Append>
   void append_rows(int parts, const Append &append);
 
@@ -61,7 +64,7 @@ private:
   int rows_y_ = 0, rows_z_ = 0, points_x_ = 0;
   std::vector<Segment> segments_;
   std::vector<int> first_;
-  std::vector<unsigned char> mask_;
+  std::array<BitRows, 2> near_;  ///< kept for their memory
 };
 
 }  // namespace eulastic

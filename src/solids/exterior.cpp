@@ -1,18 +1,15 @@
 #include "solids/exterior.hpp"
 
 #include "base/events.hpp"
-#include "grid/row_scratch.hpp"
 #include "grid/threads.hpp"
 #include "kernels/stencils.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 
 namespace eulastic {
 namespace {
-
-constexpr unsigned char outside = 255;
 
 // The owned points of a field and `layers` of points around them.
 struct PointBlock {
@@ -24,52 +21,8 @@ struct PointBlock {
       end[d] = near.end;
     }
   }
-  bool contains(const Int3 &p) const {
-    return p[0] >= begin[0] && p[0] < end[0] && p[1] >= begin[1] && p[1] < end[1] && p[2] >= begin[2] && p[2] < end[2];
-  }
+  bool has_row(int j, int k) const { return j >= begin[1] && j < end[1] && k >= begin[2] && k < end[2]; }
 };
-
-// Whether the layer number decreases for two points beyond the neighbour mask[step], i.e. the line leads into the body.
-bool leads_in(const unsigned char *mask, std::ptrdiff_t step) {
-  const auto inwards = [](unsigned char layer, unsigned char next) { return next == 0 || next < layer; };
-  return inwards(mask[step], mask[2 * step]) && inwards(mask[2 * step], mask[3 * step]);
-}
-
-// Flags the first `n` points of a row: 0 where B evolves, `outside` elsewhere. `phi` is at their centres, or at the
-// centres above their edges.
-template <bool Edge>
-EULASTIC_INLINE void flag_points(int n, const double *phi, const std::ptrdiff_t *step, double threshold,
-                                 unsigned char *row) {
-  const std::ptrdiff_t a = -step[0], b = -step[1];
-#pragma omp simd
-  for (int i = 0; i < n; ++i) row[i] = (Edge ? kernels::average4(phi + i, a, b) : phi[i]) >= threshold ? 0 : outside;
-}
-
-EULASTIC_CLONES void flag_row(int n, const double *phi, const std::ptrdiff_t *step, double threshold,
-                              unsigned char *row) {
-  if (step[0] != 0)
-    flag_points<true>(n, phi, step, threshold, row);
-  else
-    flag_points<false>(n, phi, step, threshold, row);
-}
-
-// found = 1 at the points outside with a face neighbour in a layer below L, 0 elsewhere. Works on whole vectors.
-EULASTIC_CLONES void find_layer(int n, const unsigned char *row, std::ptrdiff_t sy, std::ptrdiff_t sz, unsigned char L,
-                                unsigned char *found) {
-  const auto least = [](unsigned char a, unsigned char b) EULASTIC_BODY { return a < b ? a : b; };
-#pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const unsigned char near =
-        least(least(least(row[i - 1], row[i + 1]), least(row[i - sy], row[i + sy])), least(row[i - sz], row[i + sz]));
-    found[i] = row[i] == outside && near < L;
-  }
-}
-
-// Index of the first found point at or after i, or n.
-int next_found(const unsigned char *found, int i, int n) {
-  const void *at = std::memchr(found + i, 1, n - i);
-  return at ? static_cast<int>(static_cast<const unsigned char *>(at) - found) : n;
-}
 
 // Whether all edges around the centre phi[0] evolve.
 bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimension, double least) {
@@ -92,26 +45,93 @@ OccupiedRows::Span near_part(const Phase &phase, const PointBlock &extent, int j
   return {std::max(span.begin, extent.begin[0]), std::min(span.end, extent.end[0])};
 }
 
-// Sets `mask` to 0 at the points of staggering `at` that evolve.
-void flag_evolving(const Box &box, const Phase &phase, const Staggering &at, const std::ptrdiff_t *stride,
-                   const PointBlock &all, unsigned char *mask) {
+// Sets the bits of the points of staggering `at` that evolve.
+void flag_evolving(const Box &box, const Phase &phase, const Staggering &at, const PointBlock &all, BitRows *evolving) {
   const ConstView fraction = phase.fraction[0];
   const EvolveRule &rule = phase.tensor.rule;
+  const std::ptrdiff_t stride[3] = {1, fraction.sy, fraction.sz};
   std::ptrdiff_t step[2] = {0, 0};
   int steps = 0;
   for (int d = 0; d < 3; ++d)
-    if (at[d]) step[steps++] = fraction.stride(d);
+    if (at[d]) step[steps++] = stride[d];
   for (int k = all.begin[2]; k < all.end[2]; ++k)
     for (int j = all.begin[1]; j < all.end[1]; ++j) {
       const auto [begin, end] = near_part(phase, all, j, k);
       if (begin >= end) continue;
       const double *phi = fraction.row(j, k) + begin;
-      unsigned char *row = mask + box.layout().offset(begin, j, k);
-      flag_row(end - begin, phi, step, steps ? rule.edge : rule.centre, row);
+      const int first_bit = begin - evolving->begin_x();
+      BitRows::Word *row = evolving->row(j, k);
+      // an edge has the mean of the centres around it, in the order of average4()
+      const auto centre = [&](int i) { return load_four(phi + i) >= rule.centre; };
+      const auto edge = [&](int i) {
+        const double *q = phi + i;
+        return 0.25 * ((load_four(q) + load_four(q - step[0])) +
+                       (load_four(q - step[1]) + load_four(q - step[0] - step[1]))) >=
+               rule.edge;
+      };
+      if (steps > 0)
+        set_where(end - begin, first_bit, edge, row);
+      else
+        set_where(end - begin, first_bit, centre, row);
       if (rule.linear && steps == 0)
         for (int i = 0; i < end - begin; ++i)
-          if (row[i] == 0 && !is_surrounded(phi + i, stride, box.dimension(), rule.edge)) row[i] = outside;
+          if (is_set(first_bit + i, row) && !is_surrounded(phi + i, stride, box.dimension(), rule.edge))
+            clear_bit(first_bit + i, row);
     }
+}
+
+// The layers of the points of word w of row (j, k) and of the points around them.
+struct LayerWords {
+  const std::vector<BitRows> &up_to;  ///< [m]: the points in layer m or below
+  int j, k, w;
+
+  BitRows::Word word(int m, int d, int step) const {
+    const BitRows &mask = up_to[m];
+    if (d == 0) return mask.moved_word(j, k, w, step);
+    return mask.row(d == 1 ? j + step : j, d == 2 ? k + step : k)[w];
+  }
+  BitRows::Word in_layer(int m, int d, int step) const {
+    return m == 0 ? word(0, d, step) : word(m, d, step) & ~word(m - 1, d, step);
+  }
+  // The points whose neighbour along d is below layer L, and whose layers decrease for two points beyond it, i.e. the
+  // line leads into the body.
+  BitRows::Word lines(int L, int d, int side) const {
+    BitRows::Word found = 0;
+    for (int first = 0; first < L; ++first) {
+      BitRows::Word beyond = 0;
+      for (int second = 0; second <= std::max(first - 1, 0); ++second)
+        beyond |= in_layer(second, d, 2 * side) & word(std::max(second - 1, 0), d, 3 * side);
+      found |= in_layer(first, d, side) & beyond;
+    }
+    return found;
+  }
+};
+
+// Words of a row, one for each direction -x, +x, -y, ...: the bits of single points in the order of neighbour_bits().
+struct DirectionWords {
+  std::array<BitRows::Word, 6> of{};
+
+  BitRows::Word any() const { return of[0] | of[1] | of[2] | of[3] | of[4] | of[5]; }
+  // Returns for 8 points from bit `first` on, a multiple of 8, a byte with the bits of the directions.
+  BitRows::Word of_points(int first) const {
+    BitRows::Word bytes = 0;
+    for (int n = 0; n < 6; ++n) bytes |= (of[n] >> first & 0xff) << (8 * n);
+    return transposed(bytes);
+  }
+};
+
+// Appends the points of a word whose first bit is a point at an offset.
+void append_points(BitRows::Word points, std::ptrdiff_t offset, const DirectionWords &neighbours,
+                   const DirectionWords &lines, std::vector<LayerPoint> *entries) {
+  for (int first = 0; first < BitRows::word_bits; first += 8) {
+    unsigned group = points >> first & 0xff;
+    if (group == 0) continue;
+    const BitRows::Word near = neighbours.of_points(first), along = lines.of_points(first);
+    for (; group != 0; group &= group - 1) {
+      const int b = __builtin_ctz(group);
+      entries->emplace_back(offset + first + b, near >> (8 * b) & 0xff, along >> (8 * b) & 0xff);
+    }
+  }
 }
 
 double kinematic_viscosity(const Fluid &fluid, const Material &material) {
@@ -142,56 +162,50 @@ PetscErrorCode ExteriorLayers::build(const Box &box, const Phase &phase) {
   PetscFunctionReturn(0);
 }
 
-void ExteriorLayers::build_location(const Box &box, const Phase &phase, Mask *layer_of, Location *location) const {
-  const Layout &layout = box.layout();
+void ExteriorLayers::build_location(const Box &box, const Phase &phase, Masks *masks, Location *location) const {
   const Staggering &at = location->staggering;
-  layer_of->assign(layout.size + whole_vectors(1), outside);
-  unsigned char *mask = layer_of->data();
-  const std::ptrdiff_t stride[3] = {1, layout.sy, box.dimension() == 3 ? layout.sz : 0};
+  const int dimension = box.dimension();
   // An edge depends on one centre further down, so four layers of edges need five layers of centres.
-  const PointBlock all(box, at, layers);
-  flag_evolving(box, phase, at, stride, all, mask);
-  const PointBlock owned(box, at, 0);
-  // The marks of a row are written one row later, so that find_layer() of the next row need not wait for these stores.
-  struct Row {
-    int begin, n = 0, j, k;
-    unsigned char *mask;
-    std::vector<unsigned char> found;
-  } rows[2];
-  for (Row &row : rows) row.found.resize(whole_vectors(all.end[0] - all.begin[0]));
+  const PointBlock all(box, at, layers), owned(box, at, 0);
+  Extent block{all.begin, all.end};  // with the rows that neighbours and lines read
+  for (int d = 1; d < dimension; ++d) {
+    block.begin[d] -= linear_ ? 3 : 1;
+    block.end[d] += linear_ ? 3 : 1;
+  }
+  masks->resize(layers + 1);
+  (*masks)[0].reset(block);
+  flag_evolving(box, phase, at, all, &(*masks)[0]);
   for (int L = 1; L <= layers; ++L) {
+    BitRows &found = (*masks)[L] = (*masks)[L - 1];
     std::vector<LayerPoint> &entries = location->layer[L - 1];
     entries.clear();
-    const auto mark = [&](Row &row) {
-      for (int i = next_found(row.found.data(), 0, row.n); i < row.n; i = next_found(row.found.data(), i + 1, row.n)) {
-        unsigned char *point_mask = row.mask + i;
-        *point_mask = static_cast<unsigned char>(L);
-        if (linear_ && !owned.contains({row.begin + i, row.j, row.k})) continue;
-        const auto counts = [=](std::ptrdiff_t step) { return point_mask[step] < L; };
-        const auto has_line = [=](std::ptrdiff_t step) { return point_mask[step] < L && leads_in(point_mask, step); };
-        entries.emplace_back(point_mask - mask, neighbour_bits(box.dimension(), stride, counts),
-                             linear_ ? neighbour_bits(box.dimension(), stride, has_line) : 0);
-      }
-      row.n = 0;
-    };
+    const std::ptrdiff_t sy = found.words(), sz = found.words_in_plane();
+    const int base = found.begin_x();
     const PointBlock extent(box, at, layers - L);
-    int turn = 0;
     for (int k = extent.begin[2]; k < extent.end[2]; ++k)
       for (int j = extent.begin[1]; j < extent.end[1]; ++j) {
         const auto [begin, end] = near_part(phase, extent, j, k);
         if (begin >= end) continue;
-        Row &row = rows[turn];
-        row.begin = begin;
-        row.n = end - begin;
-        row.j = j;
-        row.k = k;
-        row.mask = mask + layout.offset(begin, j, k);
-        find_layer(whole_vectors(row.n), row.mask, stride[1], stride[2], static_cast<unsigned char>(L),
-                   row.found.data());
-        turn = 1 - turn;
-        mark(rows[turn]);  // the previous row
+        for (int w = (begin - base) / BitRows::word_bits; w < BitRows::words_for(end - base); ++w) {
+          const BitRows &below = (*masks)[L - 1];
+          const BitRows::Word *at_w = below.row(j, k) + w;
+          DirectionWords neighbours{{below.moved_word(j, k, w, -1), below.moved_word(j, k, w, 1), at_w[-sy], at_w[sy]}};
+          if (dimension == 3) {
+            neighbours.of[4] = at_w[-sz];
+            neighbours.of[5] = at_w[sz];
+          }
+          BitRows::Word next = neighbours.any() & ~*at_w & bits_between(begin - base, end - base, w);
+          if (next == 0) continue;
+          found.row(j, k)[w] |= next;
+          DirectionWords lines;
+          if (linear_) {
+            next &= owned.has_row(j, k) ? bits_between(owned.begin[0] - base, owned.end[0] - base, w) : 0;
+            for (int n = 0; next != 0 && n < 2 * dimension; ++n)
+              lines.of[n] = LayerWords{*masks, j, k, w}.lines(L, n / 2, n % 2 ? 1 : -1);
+          }
+          append_points(next, box.layout().offset(base + w * BitRows::word_bits, j, k), neighbours, lines, &entries);
+        }
       }
-    mark(rows[1 - turn]);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "field/ghost_exchange.hpp"
 #include "field/material.hpp"
 #include "field/phase.hpp"
+#include "grid/bit_rows.hpp"
 #include "grid/box.hpp"
 #include "solids/transport.hpp"
 
@@ -48,13 +49,13 @@ private:
     Staggering staggering{};
     std::array<std::vector<LayerPoint>, layers> layer;
   };
-  using Mask = std::vector<unsigned char>;
-  void build_location(const Box &box, const Phase &phase, Mask *layer_of, Location *location) const;
+  using Masks = std::vector<BitRows>;  ///< [L]: the points that evolve or are in the layers up to L
+  void build_location(const Box &box, const Phase &phase, Masks *masks, Location *location) const;
   double extend_part(const Box &box, int layer, int part, int parts, double *B) const;
 
   bool linear_ = false;
   std::vector<Location> locations_;  ///< centres first, then one for each off-diagonal component
-  std::vector<Mask> masks_;          ///< layer of every point, for each location with threads, else for one at a time
+  std::vector<Masks> masks_;         ///< for each location with threads, else for one at a time
 };
 
 }  // namespace eulastic

@@ -117,3 +117,97 @@ TEST(Exterior, IsTheSameAcrossPeriodicSides) {
               << "B " << c << " at " << i << ", " << j << " of a disc at " << m << ", " << n;
   }
 }
+
+// The layer of every point of a periodic grid by the definition: 0 where B evolves, 1 to 4, or 99.
+std::vector<int> layers_of(const Domain &domain, ConstView phi, const Staggering &at) {
+  const Int3 &n = domain.cells();
+  const auto index = [&n](int i, int j, int k) {
+    return ((i + n[0]) % n[0]) + n[0] * (((j + n[1]) % n[1]) + n[1] * ((k + n[2]) % n[2]));
+  };
+  std::vector<int> layer(n[0] * n[1] * n[2], 99);
+  const int edge = at[0] + at[1] + at[2];
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j)
+      for (int i = 0; i < n[0]; ++i) {
+        double sum = 0;
+        for (int corner = 0; corner < 8; ++corner)
+          sum += phi(i - (at[0] && corner & 1), j - (at[1] && corner & 2), k - (at[2] && corner & 4)) / 8;
+        if (sum >= (edge ? evolve_above_half.edge : evolve_above_half.centre)) layer[index(i, j, k)] = 0;
+      }
+  for (int L = 1; L <= ExteriorLayers::layers; ++L)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j)
+        for (int i = 0; i < n[0]; ++i) {
+          int least = 99;
+          for (const int side : {-1, 1}) {
+            least = std::min({least, layer[index(i + side, j, k)], layer[index(i, j + side, k)]});
+            if (n[2] > 1) least = std::min(least, layer[index(i, j, k + side)]);
+          }
+          if (layer[index(i, j, k)] == 99 && least < L) layer[index(i, j, k)] = L;
+        }
+  return layer;
+}
+
+// Bodies in rows of more than 64 points: every point of a layer gets the mean of its neighbours in lower layers, and no
+// other point changes.
+TEST(Exterior, LayersFollowTheDefinition) {
+  for (const Int3 &cells : {Int3{150, 24, 1}, Int3{90, 18, 20}}) {
+    GridSpec grid;
+    grid.cells = cells;
+    for (int d = 0; d < 3; ++d) grid.length[d] = cells[d];
+    Scene scene;
+    ASSERT_EQ(scene.create(PETSC_COMM_SELF, grid, {method_preset(MethodKind::fast), {}, {}}), 0);
+    const auto blobs = [&](double x, double y, double z) {
+      double phi = 0;
+      for (const double centre : {3., 60., 66., 88.})
+        phi = std::max(phi, 4.2 - std::hypot(std::remainder(x - centre, cells[0]), y - 9, cells[2] > 1 ? z - 9 : 0));
+      return std::clamp(phi, 0., 1.);
+    };
+    scene.add_phase(1, blobs);
+    ASSERT_EQ(scene.solver.prepare(), 0);
+    Phase &phase = scene.solver.state().phases[0];
+    Field &B = phase.tensor.field;
+    const auto components = tensor_components(scene.domain.dimension());
+    for (int c = 0; c < B.count(); ++c)
+      set(scene.domain, B[c], components[c].at,
+          [c](double x, double y, double z) { return std::sin(1 + c + 7 * x + 3 * y + 5 * z); });
+    ASSERT_EQ(scene.solver.exchange().update_ghosts(B, ExteriorLayers::layers), 0);
+    Field before;
+    before.copy_from(B);
+    ExteriorLayers layers;
+    ASSERT_EQ(layers.build(scene.domain, phase), 0);
+    ASSERT_EQ(layers.extend(scene.domain, scene.solver.spec().sides, &scene.solver.exchange(), B), 0);
+    for (int c = 0; c < B.count(); ++c) {
+      const std::vector<int> layer = layers_of(scene.domain, phase.fraction[0], components[c].at);
+      const auto wrapped = [&](int i, int j, int k) {
+        return Int3{(i + cells[0]) % cells[0], (j + cells[1]) % cells[1], (k + cells[2]) % cells[2]};
+      };
+      const auto layer_at = [&](const Int3 &p) { return layer[p[0] + cells[0] * (p[1] + cells[1] * p[2])]; };
+      int found = 0;
+      for (int k = 0; k < cells[2]; ++k)
+        for (int j = 0; j < cells[1]; ++j)
+          for (int i = 0; i < cells[0]; ++i) {
+            const int L = layer_at({i, j, k});
+            if (L == 0 || L == 99) {
+              ASSERT_EQ(B[c](i, j, k), before[c](i, j, k)) << c << " at " << i << " " << j << " " << k;
+              continue;
+            }
+            double sum = 0, count = 0;
+            for (const auto &[x, y, z] : {Int3{1, 0, 0}, Int3{0, 1, 0}, Int3{0, 0, cells[2] > 1}}) {
+              if (x + y + z == 0) continue;
+              double pair = 0;
+              for (const int side : {-1, 1}) {
+                const Int3 p = wrapped(i + side * x, j + side * y, k + side * z);
+                if (layer_at(p) >= L) continue;
+                pair += B[c](p[0], p[1], p[2]);
+                ++count;
+              }
+              sum += pair;
+            }
+            ASSERT_EQ(B[c](i, j, k), sum / count) << c << " at " << i << " " << j << " " << k;
+            ++found;
+          }
+      EXPECT_GT(found, 400);
+    }
+  }
+}
