@@ -40,6 +40,7 @@ class AdhesionStudy(WithFolder):
         self.assertRegex(made, r"(?m)^\| 0.8 \| [\d.]+ \| \d+ \| holds \| holds \|$")
         broken = re.search(r"^\| 1.2 \| [\d.]+ \| \d+ \| (\d+) \| (\d+) \|$", made, re.MULTILINE)
         self.assertTrue(0.95 < int(broken[1]) / int(broken[2]) < 1.25, made)
+        self.assertRegex(made, r"(?m)^\| 1 \| \d+ \| [\d.]+ % \|$")
         for name in ("tether", "threshold", "detachment", "arrest"):
             self.assertTrue((self.folder / f"adhesion_{name}.png").exists(), name)
         self.check_bonds(self.folder / "tether_4")
