@@ -123,10 +123,11 @@ struct DirectionWords {
 // Appends the points of a word whose first bit is a point at an offset.
 void append_points(BitRows::Word points, std::ptrdiff_t offset, const DirectionWords &neighbours,
                    const DirectionWords &lines, std::vector<LayerPoint> *entries) {
+  const bool any_line = lines.any() != 0;
   for (int first = 0; first < BitRows::word_bits; first += 8) {
     unsigned group = points >> first & 0xff;
     if (group == 0) continue;
-    const BitRows::Word near = neighbours.of_points(first), along = lines.of_points(first);
+    const BitRows::Word near = neighbours.of_points(first), along = any_line ? lines.of_points(first) : 0;
     for (; group != 0; group &= group - 1) {
       const int b = __builtin_ctz(group);
       entries->emplace_back(offset + first + b, near >> (8 * b) & 0xff, along >> (8 * b) & 0xff);
@@ -179,22 +180,21 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Masks *m
     BitRows &found = (*masks)[L] = (*masks)[L - 1];
     std::vector<LayerPoint> &entries = location->layer[L - 1];
     entries.clear();
-    const std::ptrdiff_t sy = found.words(), sz = found.words_in_plane();
-    const int base = found.begin_x();
+    const BitRows &below = (*masks)[L - 1];
+    const std::ptrdiff_t sy = below.words(), sz = below.words_in_plane();
+    const int base = below.begin_x();
     const PointBlock extent(box, at, layers - L);
     for (int k = extent.begin[2]; k < extent.end[2]; ++k)
-      for (int j = extent.begin[1]; j < extent.end[1]; ++j) {
-        const auto [begin, end] = near_part(phase, extent, j, k);
-        if (begin >= end) continue;
-        for (int w = (begin - base) / BitRows::word_bits; w < BitRows::words_for(end - base); ++w) {
-          const BitRows &below = (*masks)[L - 1];
+      for (int j = extent.begin[1]; j < extent.end[1]; ++j)
+        for (int w = 0; w < below.words(); ++w) {
           const BitRows::Word *at_w = below.row(j, k) + w;
           DirectionWords neighbours{{below.moved_word(j, k, w, -1), below.moved_word(j, k, w, 1), at_w[-sy], at_w[sy]}};
           if (dimension == 3) {
             neighbours.of[4] = at_w[-sz];
             neighbours.of[5] = at_w[sz];
           }
-          BitRows::Word next = neighbours.any() & ~*at_w & bits_between(begin - base, end - base, w);
+          BitRows::Word next =
+              neighbours.any() & ~*at_w & bits_between(extent.begin[0] - base, extent.end[0] - base, w);
           if (next == 0) continue;
           found.row(j, k)[w] |= next;
           DirectionWords lines;
@@ -205,7 +205,6 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Masks *m
           }
           append_points(next, box.layout().offset(base + w * BitRows::word_bits, j, k), neighbours, lines, &entries);
         }
-      }
   }
 }
 
