@@ -116,6 +116,14 @@ class CommandLine(unittest.TestCase):
                 flops[words[0]] += float(words[5])
         self.assertEqual([verb for verb, count in flops.items() if not count > 0], [])
 
+    def test_dm_view_shows_the_dmda_of_the_fields(self):
+        """8 points along periodic directions, 9 between walls, and the split that -da_processors asks for."""
+        for ranks, split, sizes in (1, (), "m 1 n 1 p 1"), (2, ("-da_processors_z", "2"), "m 1 n 1 p 2"):
+            result = self.run_program(*SCENE, *split, "-dm_view", "-output_dir", f"run{ranks}", ranks=ranks)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("type: da", result.stdout)
+            self.assertRegex(result.stdout, rf"Processor \[0\] M 8 N 9 P 8 {sizes} w 1 s \d")
+
     def test_log_that_cannot_be_written(self):
         for ranks in (0, 2):
             result = self.run_program(*SCENE, "-log_view", ":/nowhere/log", "-output_dir", f"run{ranks}", ranks=ranks)
