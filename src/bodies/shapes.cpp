@@ -33,6 +33,23 @@ Turn turn(double degrees) {
   return {std::cos(angle * (pi / 180)), std::sin(angle * (pi / 180))};
 }
 
+// Points of the surface of a biconcave disc of radius 1, between its axis and its rim.
+struct RimPoint {
+  double sine, cosine, thickness;
+};
+const std::vector<RimPoint> &rim_points() {
+  constexpr int samples = 512;
+  static const std::vector<RimPoint> points = [] {
+    std::vector<RimPoint> all;
+    for (int s = 0; s <= samples; ++s) {
+      const double sine = std::sin(pi / 2 * s / samples);
+      all.push_back({sine, std::cos(pi / 2 * s / samples), profile(sine * sine)});
+    }
+    return all;
+  }();
+  return points;
+}
+
 }  // namespace
 
 Rotation rotation(const Real3 &degrees) {
@@ -116,12 +133,9 @@ double Surface::support(const Real3 &n) const {
   if (is_tube(shape_)) return infinity;
   if (shape_ == Shape::biconcave) {
     const double along = std::abs(n[axis_]), across = std::sqrt(std::max(0.0, 1 - along * along));
-    constexpr int samples = 512;
     double best = 0;
-    for (int s = 0; s <= samples; ++s) {
-      const double sine = std::sin(pi / 2 * s / samples), cosine = std::cos(pi / 2 * s / samples);
-      best = std::max(best, across * sine + along * cosine * profile(sine * sine) / 2);
-    }
+    for (const RimPoint &point : rim_points())
+      best = std::max(best, across * point.sine + along * point.cosine * point.thickness / 2);
     return radius_ * (best + 3e-6);
   }
   double square = 0;
