@@ -342,7 +342,7 @@ double Adhesion::largest_step() const {
   for (int d = 1; d < domain.dimension(); ++d) h = std::min(h, domain.spacing()[d]);
   for (const AdhesionPair &pair : spec_.pairs) {
     const double stiffness = pair.law.stiffness * std::max(1.0, most_);
-    // the attachment of a receptor to a solid moves up to three times as fast as a point
+    // The two forces on an attachment to a solid move it up to three times as fast as one force would.
     const double drag = pi * flow_.fluid.viscosity * h, mass = flow_.fluid.density * h * h * h / 3;
     if (stiffness > 0) shortest = std::min(shortest, std::max(drag / stiffness, std::sqrt(mass / stiffness)));
     const double rate = std::max(pair.law.rate_on, pair.law.off_rate(0));

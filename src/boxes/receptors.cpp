@@ -123,7 +123,7 @@ Real3 way_to_surface(const Box &box, const Phase &phase, const Real3 &place) {
   return way;
 }
 
-// Less deep, a part of the velocity is that of the fluid beside the surface, with which receptors slip along the body.
+// At smaller depths a part of the velocity is that of the fluid beside the body, with which receptors would slip.
 Attachment attachment_of(const Box &box, const Phase &phase, const Real3 &place) {
   constexpr double near = 1, far = 2;  // cells below the surface
   const Material &material = phase.material;

@@ -8,10 +8,6 @@
 
 namespace eulastic {
 
-/// Returns a number of bytes rounded up to a multiple of 64, the widest vectors: the remainder of a vector loop runs
-/// element by element and would often dominate.
-constexpr int whole_vectors(int n) { return (n + 63) / 64 * 64; }
-
 /// Owns `rows` rows of scratch for a box.
 class RowScratch {
 public:

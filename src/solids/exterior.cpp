@@ -61,7 +61,7 @@ void flag_evolving(const Box &box, const Phase &phase, const Staggering &at, con
       const double *phi = fraction.row(j, k) + begin;
       const int first_bit = begin - evolving->begin_x();
       BitRows::Word *row = evolving->row(j, k);
-      // an edge has the mean of the centres around it, in the order of average4()
+      // An edge has the mean of the centres around it, summed in the order of average4().
       const auto centre = [&](int i) { return load_four(phi + i) >= rule.centre; };
       const auto edge = [&](int i) {
         const double *q = phi + i;
