@@ -1,4 +1,4 @@
-# spack repo add packaging/spack && spack dev-build eulastic@0.2.0, in a clone.
+# spack repo add packaging/spack && spack dev-build eulastic@1.0.0, in a clone.
 from spack.package import *
 
 
@@ -7,7 +7,7 @@ class Eulastic(CMakePackage):
 
     license("BSD-3-Clause")
 
-    version("0.2.0")
+    version("1.0.0")
 
     variant("fftw", default=True, description="the pressure solver SMAC")
     variant("int64", default=False, description="more than 2147483647 cells")
