@@ -4,6 +4,7 @@
 #include "grid/threads.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace eulastic {
 namespace {
@@ -12,15 +13,61 @@ namespace {
 struct Source {
   PetscInt rank = -1;  // -1: no owner, the point is behind a boundary of the domain
   PetscInt offset = 0;
-  PetscInt size = 0, sy = 0, sz = 0;  // of the owner's memory layout
 };
 
-PetscErrorCode broadcast_sources(PetscSF scatter, const Source *owned, Source *copies) {
+// Of a rank's memory layout.
+struct Strides {
+  PetscInt size, sy, sz;
+};
+
+// `Data` consists of PetscInts.
+template <class Data>
+PetscErrorCode broadcast_all(PetscSF scatter, const Data *roots, Data *leaves) {
   MpiType type;
   PetscFunctionBeginUser;
-  PetscCall(type.create(sizeof(Source) / sizeof(PetscInt), MPIU_INT));
-  PetscCall(PetscSFBcastBegin(scatter, type.get(), owned, copies, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(scatter, type.get(), owned, copies, MPI_REPLACE));
+  PetscCall(type.create(sizeof(Data) / sizeof(PetscInt), MPIU_INT));
+  PetscCall(PetscSFBcastBegin(scatter, type.get(), roots, leaves, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(scatter, type.get(), roots, leaves, MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+// Broadcasts the positions of the `n` owned points to all points of the DMDA, which are those from near_begin to
+// near_end.
+PetscErrorCode find_sources(const Domain &domain, PetscSF scatter, const Int3 &n, const Int3 &near_begin,
+                            const Int3 &near_end, std::vector<Source> *sources) {
+  const Layout &layout = domain.layout();
+  std::vector<Source> owned, near;
+  PetscFunctionBeginUser;
+  owned.reserve(std::size_t(n[0]) * n[1] * n[2]);
+  for_points({{0, 0, 0}, n}, [&](int i, int j, int k) {
+    owned.push_back({static_cast<PetscInt>(domain.rank()), static_cast<PetscInt>(layout.offset(i, j, k))});
+  });
+  near.resize(std::size_t(near_end[0] - near_begin[0]) * (near_end[1] - near_begin[1]) * (near_end[2] - near_begin[2]));
+  PetscCall(broadcast_all(scatter, owned.data(), near.data()));
+  auto next = near.begin();
+  for_points({near_begin, near_end}, [&](int i, int j, int k) { (*sources)[layout.offset(i, j, k)] = *next++; });
+  PetscFunctionReturn(0);
+}
+
+// Asks the owners of `sources` for the strides of their memory.
+PetscErrorCode find_strides(const Domain &domain, const std::vector<Source> &sources,
+                            std::map<PetscInt, Strides> *strides_of_rank) {
+  const Layout &layout = domain.layout();
+  const Strides own{static_cast<PetscInt>(layout.size), static_cast<PetscInt>(layout.sy),
+                    static_cast<PetscInt>(layout.sz)};
+  std::set<PetscInt> ranks;
+  std::vector<PetscSFNode> roots;
+  SfHandle neighbors;
+  PetscFunctionBeginUser;
+  for (const Source &source : sources)
+    if (source.rank >= 0) ranks.insert(source.rank);
+  for (const PetscInt rank : ranks) roots.push_back({rank, 0});
+  std::vector<Strides> found(roots.size());
+  PetscCall(PetscSFCreate(domain.comm(), neighbors.put()));
+  PetscCall(PetscSFSetGraph(neighbors.get(), 1, static_cast<PetscInt>(roots.size()), nullptr, PETSC_COPY_VALUES,
+                            roots.data(), PETSC_COPY_VALUES));
+  PetscCall(broadcast_all(neighbors.get(), &own, found.data()));
+  for (std::size_t n = 0; n < roots.size(); ++n) strides_of_rank->emplace(roots[n].rank, found[n]);
   PetscFunctionReturn(0);
 }
 
@@ -56,14 +103,10 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
     begin[d] = -layout.ghosts[d];
     end[d] = n[d] + layout.ghosts[d];
   }
-  std::vector<Source> sources(layout.size), owned, near(std::size_t(near_points[0]) * near_points[1] * near_points[2]);
-  for_points({{0, 0, 0}, n}, [&](int i, int j, int k) {
-    owned.push_back({static_cast<PetscInt>(domain.rank()), offset({i, j, k}), static_cast<PetscInt>(layout.size),
-                     static_cast<PetscInt>(layout.sy), static_cast<PetscInt>(layout.sz)});
-  });
-  PetscCall(broadcast_sources(scatter, owned.data(), near.data()));
-  auto next = near.begin();
-  for_points({near_begin, near_end}, [&](int i, int j, int k) { sources[offset({i, j, k})] = *next++; });
+  std::vector<Source> sources(layout.size);
+  PetscCall(find_sources(domain, scatter, n, near_begin, near_end, &sources));
+  std::map<PetscInt, Strides> strides_of_rank;
+  PetscCall(find_strides(domain, sources, &strides_of_rank));
 
   std::vector<PetscInt> leaves;
   std::vector<PetscSFNode> roots;
@@ -73,22 +116,25 @@ PetscErrorCode find_ghosts(const Domain &domain, std::vector<Ghost> *ghosts) {
     for (int d = 0; d < 3; ++d) inner_point[d] = std::clamp<int>(p[d], -width, n[d] + width - 1);
     const Source &source = sources[offset(inner_point)];
     if (inner_point == p || source.rank < 0) return;
+    const Strides &strides = strides_of_rank.at(source.rank);
     leaves.push_back(offset(p));
-    roots.push_back({source.rank, source.offset + (p[0] - inner_point[0]) + (p[1] - inner_point[1]) * source.sy +
-                                      (p[2] - inner_point[2]) * source.sz});
+    roots.push_back({source.rank, source.offset + (p[0] - inner_point[0]) + (p[1] - inner_point[1]) * strides.sy +
+                                      (p[2] - inner_point[2]) * strides.sz});
   });
   SfHandle outer_ghosts;
   PetscCall(PetscSFCreate(domain.comm(), outer_ghosts.put()));
   PetscCall(PetscSFSetGraph(outer_ghosts.get(), static_cast<PetscInt>(layout.size),
                             static_cast<PetscInt>(leaves.size()), leaves.data(), PETSC_COPY_VALUES, roots.data(),
                             PETSC_COPY_VALUES));
-  PetscCall(broadcast_sources(outer_ghosts.get(), sources.data(), sources.data()));
+  PetscCall(broadcast_all(outer_ghosts.get(), sources.data(), sources.data()));
+  PetscCall(find_strides(domain, sources, &strides_of_rank));  // of the owners that are new
 
   for_points({begin, end}, [&](int i, int j, int k) {
     const Int3 p{i, j, k};
     const Source &source = sources[offset(p)];
     const bool is_owned = p[0] >= 0 && p[0] < n[0] && p[1] >= 0 && p[1] < n[1] && p[2] >= 0 && p[2] < n[2];
-    if (!is_owned && source.rank >= 0) ghosts->push_back({p, source.rank, source.offset, source.size});
+    if (!is_owned && source.rank >= 0)
+      ghosts->push_back({p, source.rank, source.offset, strides_of_rank.at(source.rank).size});
   });
   PetscFunctionReturn(0);
 }
