@@ -83,8 +83,8 @@ PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoundaryCon
   PetscFunctionBeginUser;
   domain_ = &domain;
   viscosity_ = std::sqrt(least * largest);
-  tolerance_ = tolerance;
-  stricter_ = std::min(1.0, 10 * std::sqrt(least / largest));
+  option_ = tolerance;
+  tolerance_ = std::min(tolerance, 0.1 * std::sqrt(least / largest));
   const int dim = domain.dimension();
   for (int a = 0; a < dim; ++a) {
     boundaries_[a] = zero_sides(domain, sides, a);
@@ -303,7 +303,7 @@ PetscErrorCode ImplicitViscosity::second_system(GhostExchange &exchange, const V
 PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousStep &step, double part, Size size,
                                         Field &solution) {
   PetscFunctionBeginUser;
-  const double relative = stricter_ * tolerance_, enough = relative * relative * size.right_side;
+  const double enough = tolerance_ * tolerance_ * size.right_side;
   constexpr int flops_of_iteration = 20;  // per face: sums, directions, solution, residual
   double last = 0;                        // of the last direction d, d . A d
   direction_.clear();
@@ -339,7 +339,7 @@ PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousSt
     SETERRQ(domain_->comm(), PETSC_ERR_NOT_CONVERGED,
             "the implicit viscous step did not converge in %d iterations (residual %.3g of the right-hand side); "
             "accepted: a larger -viscous_tolerance (now %g) or -viscous_scheme rkl",
-            most_iterations, std::sqrt(size.residual / size.right_side), tolerance_);
+            most_iterations, std::sqrt(size.residual / size.right_side), option_);
   PetscFunctionReturn(0);
 }
 

@@ -15,8 +15,8 @@ class ImplicitViscosity {
 public:
   /// Builds the V-cycles for increments of the velocity, which are 0 on closed boundaries, with the geometric mean of
   /// the `least` and the `largest` kinematic viscosity. `tolerance`: of the residual of each system, relative to its
-  /// right-hand side; it is lowered by 10 sqrt(least/largest) for contrasts above 100, because the residual then hides
-  /// errors where the viscosity is least. Collective.
+  /// right-hand side; at most .1 sqrt(least/largest), because with large contrasts the residual hides errors where the
+  /// viscosity is least. Collective.
   PetscErrorCode create(const Domain &domain, const BoundaryConditions &sides, double least, double largest,
                         double tolerance);
   /// v* = v + W(dt) like super_time_step(), from `step.local`; `step.rigid` must be null. `rate`: M_0, overwritten.
@@ -55,8 +55,8 @@ private:
 
   const Domain *domain_ = nullptr;
   double viscosity_ = 0;  ///< of the V-cycles
-  double tolerance_ = 0;  ///< the option's
-  double stricter_ = 1;   ///< factor of the tolerance for large contrasts
+  double option_ = 0;     ///< -viscous_tolerance
+  double tolerance_ = 0;  ///< of the residual, relative to the right-hand side; smaller for large contrasts
   double flops_ = 0;      ///< of the last step, without the viscous forces
   int products_ = 0;
   std::vector<Faces> faces_;
