@@ -4,9 +4,9 @@ namespace eulastic {
 namespace {
 
 void add_region(Rows &rows, AdhesiveRegion &area) {
-  Option &region = rows.add(
-      "region", "length",
-      "the box, by its low and high corner, in which a wall or the surface of a rigid or anchored species is adhesive");
+  Option &region = rows.add("region", "length",
+                            "box in which a wall, or the surface of a rigid or anchored species, is adhesive: x,y,z of "
+                            "its low corner, then of its high corner");
   region.accepted = several(6, "number", any_number);
   region.default_note = "everywhere";
   region.read = [&area](const std::string &value) {
@@ -27,8 +27,8 @@ void add_region(Rows &rows, AdhesiveRegion &area) {
     return join(items, ",");
   };
   Option &file = rows.path("region_file", area.file.path,
-                           "file of the cells in which a wall or surface is adhesive (HDF5, NRRD, STL): those that it "
-                           "fills at least in part; with -..._region: in both");
+                           "file (HDF5, NRRD, STL) of a volume; a wall or surface is adhesive in the cells that this "
+                           "volume fills at least in part, and with -adhesion_NAME1_NAME2_region only inside that box");
   file.accepted = "a path, of HDF5 also FILE:DATASET";
   file.names_file = any_file;
 }
@@ -62,9 +62,9 @@ std::string read_adhesion(const std::string &value, Config *config) {
 void add_adhesion(Rows &rows, Config &config) {
   rows.group = "Adhesion";
   Option &pairs = rows.add("adhesion", "",
-                           "pairs of surfaces that adhere; each has its own set of the options "
-                           "adhesion_NAME1_NAME2_...");
-  pairs.accepted = "a list without spaces of NAME1-NAME2, two species or twice the same, or NAME-wall";
+                           "pairs of surfaces that adhere by bonds; each has its own set of the options "
+                           "-adhesion_NAME1_NAME2_...; none: no adhesion");
+  pairs.accepted = "a list without spaces of NAME1-NAME2, two species or the same one twice, or NAME-wall";
   pairs.default_note = "none";
   pairs.read = [](const std::string &) { return std::string(); };  // read before this table, which it lengthens
   pairs.text = [&config] {
@@ -74,7 +74,7 @@ void add_adhesion(Rows &rows, Config &config) {
   };
   rows.limit("-adhesion", [&config] { return !config.adhesion.pairs.empty(); });
   rows.integer("adhesion_seed", config.adhesion.seed, {0, false, 4294967295.},
-               "seed of the random numbers with which bonds form and break");
+               "seed of the random numbers by which bonds form and break");
   rows.end_limit();
   for (AdhesionPair &pair : config.adhesion.pairs) {
     rows.group = "Adhesion " + pair.name;
@@ -82,24 +82,29 @@ void add_adhesion(Rows &rows, Config &config) {
     name[name.find('-')] = '_';
     rows.prefix = "adhesion_" + name + "_";
     kernels::BondLaw &law = pair.law;
-    rows.real("density", pair.density, positive, "1/area", "receptors per area on the bodies; in 2-D per length")
+    rows.real("density", pair.density, positive, "1/area",
+              "number of receptors per area on the surfaces of the bodies; in 2-D per length")
         .required = true;
-    rows.real("reach", law.reach, positive, "length", "largest distance at which a free receptor binds").required =
-        true;
-    rows.real("rate_on", law.rate_on, not_negative, "1/time", "rate at which a receptor within reach binds").required =
-        true;
+    rows.real("reach", law.reach, positive, "length",
+              "largest distance from the other surface at which a free receptor binds")
+        .required = true;
+    rows.real("rate_on", law.rate_on, not_negative, "1/time", "rate at which a free receptor within reach forms a bond")
+        .required = true;
     rows.real("rate_off", law.rate_off, not_negative, "1/time", "rate at which a bond without tension breaks")
         .required = true;
-    rows.real("bond_stiffness", law.stiffness, positive, "force/length", "stiffness of a bond").required = true;
-    rows.real("bond_length", law.length, not_negative, "length", "length of a bond without tension");
+    rows.real("bond_stiffness", law.stiffness, positive, "force/length", "spring constant of a bond").required = true;
+    rows.real("bond_length", law.length, not_negative, "length", "length of a bond at which its tension is 0");
     rows.real("reactive_compliance", law.reactive_compliance, not_negative, "1/force",
-              "x/kT of Bell's law: the tension F multiplies the rate of rupture by exp(F x/kT)");
+              "reactive compliance x/kT of Bell's law: the tension F multiplies the rate of rupture by exp(F x/kT); 0: "
+              "tension has no effect");
     rows.real("catch_rate_off", law.catch_rate_off, not_negative, "1/time",
-              "rate of a second path of rupture that tension suppresses (catch bonds)");
+              "rate of rupture, without tension, along a second path that tension suppresses (catch bonds); 0: no "
+              "second path");
     rows.real("catch_compliance", law.catch_compliance, not_negative, "1/force",
-              "the tension F multiplies that rate by exp(-F c)");
+              "compliance c of this second path: the tension F multiplies its rate by exp(-F c)");
     rows.real("thermal_energy", law.thermal_energy, not_negative, "energy",
-              "kT: stretched bonds form at a lower rate, in detailed balance; 0: one rate everywhere within reach");
+              "thermal energy kT, by which stretched bonds form at a lower rate, in detailed balance; 0: the rate is "
+              "the same everywhere within reach");
     add_region(rows, pair.region);
     rows.prefix.clear();
   }

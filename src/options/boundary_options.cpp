@@ -11,11 +11,15 @@ void add_kinds(Rows &rows, Config &config) {
   rows.group = "Boundaries";
   for (int d = 0; d < 3; ++d)
     rows.choice(std::string("boundary_") + "xyz"[d], config.boundary.both[d], boundary_names,
-                std::string("both boundaries in ") + "xyz"[d]);
+                std::string("kind of both boundaries in ") + "xyz"[d] +
+                    "; wall: no slip; symmetry: no flow through it and no shear stress");
   for (int d = 0; d < 3; ++d)
     for (int high = 0; high < 2; ++high)
-      rows.choice(std::string("boundary_") + "xyz"[d] + (high ? "max" : "min"), config.boundary.side[d][high],
-                  side_names, "this boundary alone; same: as the option for both boundaries");
+      rows.choice(
+          std::string("boundary_") + "xyz"[d] + (high ? "max" : "min"), config.boundary.side[d][high], side_names,
+          "kind of this boundary alone; same: the kind that -boundary_x, -boundary_y or -boundary_z gives to both; "
+          "wall: no slip; symmetry: no flow through it and no shear stress; inflow: the velocity is prescribed; "
+          "pressure: the pressure is prescribed; outflow: pressure 0, and no energy enters where fluid flows back");
 }
 
 bool is_number(const std::string &text) {
@@ -37,11 +41,12 @@ struct BoundaryRows {
 
   void add_velocity() const {
     only_on({BoundaryKind::wall, BoundaryKind::inflow}, "wall or inflow");
-    Option &row = rows.add("velocity", "length/time",
-                           "wall: its velocity, whose normal component must be 0; inflow: the mean velocity into the "
-                           "box over the open area; multiplied by cos(angular_frequency t + phase)");
+    Option &row =
+        rows.add("velocity", "length/time",
+                 "for a wall its velocity, whose normal component must be 0; for an inflow the mean velocity into the "
+                 "box over the open area; a number is multiplied by cos(angular_frequency t + phase)");
     row.accepted = std::string("for a wall 3 numbers, separated by commas; for inflow ") + number_or_table;
-    row.default_note = "0,0,0 for a wall; inflow requires it or the flow rate, unless the profile is a file";
+    row.default_note = "0,0,0 for a wall; an inflow requires it or the flow rate, unless the profile is a file";
     row.names_file = [](const std::string &value) { return !is_number(value) && !is_vector(value); };
     row.read = [&spec = spec](const std::string &value) { return read_text(value, &spec.velocity); };
     row.text = [&config = config, &spec = spec, d = d, high = high] {
@@ -57,39 +62,42 @@ struct BoundaryRows {
   void add_inflow() const {
     only_on({BoundaryKind::inflow}, "inflow");
     number_or_file("flow_rate", spec.flow_rate, "volume/time",
-                   "flow rate into the box, in 2-D per depth, instead of the velocity");
-    Option &profile =
-        rows.path("profile", spec.profile,
-                  "profile of the velocity into the box: uniform; developed, that of a steady duct flow; or one "
-                  "number per cell of the boundary, from a text or HDF5 file (docs/howto/vessel.md)");
+                   "flow rate into the box, given instead of the velocity; in 2-D per unit depth");
+    Option &profile = rows.path("profile", spec.profile,
+                                "profile of the velocity into the box; uniform: the same velocity everywhere; "
+                                "developed: that of a steady flow in a duct with this cross-section; a path: one "
+                                "number per cell of the boundary, from a text or HDF5 file (docs/howto/vessel.md)");
     profile.accepted = "uniform, developed, or a path, of HDF5 also FILE:DATASET";
     profile.names_file = [](const std::string &value) { return value != "uniform" && value != "developed"; };
     rows.real("generator_length", spec.generator_length, not_negative, "length",
-              "length of the inlet generator beside the boundary: bodies and flow that pass its end also enter through "
-              "the boundary");
+              "length of the inlet generator, a stretch of the box beside the boundary: bodies and flow that pass its "
+              "end also enter through the boundary; off: no inlet generator");
     rows.zero_is("off");
   }
 
   void add_pressure() const {
     only_on({BoundaryKind::pressure}, "pressure");
-    number_or_file("pressure", spec.pressure, "pressure", "pressure at the boundary");
+    number_or_file("pressure", spec.pressure, "pressure", "prescribed pressure at the boundary");
     rows.real("resistance", spec.resistance, not_negative, "pressure time/volume",
-              "resistance: the pressure increases by this times the flow rate out of the box");
+              "resistance of the vessels behind the boundary: the pressure at the boundary increases by this value "
+              "times the flow rate out of the box");
     rows.real("windkessel", spec.windkessel, not_negative, "",
-              "three-element Windkessel R,C,R: a resistance, then a capacitance (volume/pressure) in parallel with a "
-              "second resistance; 0,0,0 is none");
+              "three-element Windkessel R1,C,R2 behind the boundary: a resistance R1 (pressure time/volume), in series "
+              "with a capacitance C (volume/pressure) and a resistance R2 in parallel; 0,0,0: none");
     rows.real("windkessel_initial_pressure", spec.windkessel_start, any_number, "pressure",
-              "pressure of the capacitance of the Windkessel at t = 0");
+              "pressure of the capacitance C of the Windkessel at t = 0");
   }
 
   void add_table_ends() const {
     only_on({BoundaryKind::inflow, BoundaryKind::pressure}, "inflow or pressure");
     rows.may_change = true;
     rows.real("table_period", spec.period, not_negative, "time",
-              "period after which a table repeats (docs/howto/numbers.md)");
+              "period after which the table of the velocity, flow rate or pressure repeats (docs/howto/numbers.md); "
+              "off: it does not repeat");
     rows.zero_is("off");
     rows.boolean("table_hold", spec.hold,
-                 "whether a table that does not cover the run is continued by its first and its last value");
+                 "whether the first value of the table holds before its first time, and the last value after its last "
+                 "time; false: the table must cover the run");
     rows.may_change = false;
   }
 

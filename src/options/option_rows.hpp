@@ -92,8 +92,9 @@ public:
   }
   /// The rows of cos(angular_frequency t + phase), which multiplies a quantity.
   void oscillation(const std::string &start, double &frequency, double &phase, const std::string &of_what = {}) {
-    real(start + "angular_frequency", frequency, not_negative, "rad/time", "angular frequency" + of_what);
-    real(start + "phase", phase, any_number, "rad", "phase" + of_what);
+    real(start + "angular_frequency", frequency, not_negative, "rad/time",
+         "angular frequency of the oscillation" + of_what + "; 0: steady");
+    real(start + "phase", phase, any_number, "rad", "phase of the oscillation" + of_what + " at t = 0");
   }
   template <class T>
   Option &integer(const std::string &name, T &target, const Range &range, const std::string &doc) {

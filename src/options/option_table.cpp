@@ -14,52 +14,65 @@ const Names method_names{"fast", "classic"};
 void add_grid(Rows &rows, Config &config) {
   rows.group = "Grid";
   rows.numbers("grid_cells", config.grid.cells.data(), 3, at_least_one, "",
-               "number of cells in x, y, z; 1 in z selects 2-D, where shapes ignore z");
-  rows.real("grid_length", config.grid.length, positive, "length", "size of the box");
+               "number of grid cells along x, y and z; 1 along z selects a 2-D simulation, in which the z coordinate "
+               "of bodies is ignored");
+  rows.real("grid_length", config.grid.length, positive, "length", "edge lengths of the box along x, y and z");
   rows.may_change = true;
   for (int d = 0; d < 3; ++d) {
     rows.integer(std::string("da_processors_") + "xyz"[d], config.grid.processors[d], {0, false},
-                 std::string("ranks along ") + "xyz"[d]);
+                 std::string("number of MPI ranks along ") + "xyz"[d]);
     rows.zero_is("auto");
   }
   rows.integer("threads", config.threads, {1, false, 1024},
-               "threads per rank; they share its planes of cells, in 2-D its rows, and its bodies in boxes");
+               "number of threads of each MPI rank; they share the planes of cells (in 2-D the rows) and the bodies of "
+               "the rank");
   rows.boolean("load_balance", config.balance,
-               "load balance: cut y and z by the estimated cost of the cells, at the start and at restarts");
+               "whether the box is cut along y and z into parts of equal estimated work, at the start and at restarts; "
+               "false: into parts with equal numbers of cells");
   rows.may_change = false;
 }
 
 void add_flow(Rows &rows, Config &config) {
   rows.group = "Fluid";
   Fluid &fluid = config.fluid;
-  rows.real("fluid_density", fluid.density, positive, "mass/volume", "density of fluid and bodies");
+  rows.real("fluid_density", fluid.density, positive, "mass/volume",
+            "density, which is the same for the fluid and all bodies");
   rows.real("fluid_viscosity", fluid.viscosity, not_negative, "mass/length/time",
-            "dynamic viscosity of the fluid, and of bodies without -NAME_viscosity");
-  rows.boolean("fluid_inertia", fluid.inertia, "whether the momentum equation has the term v.grad v");
+            "dynamic viscosity of the fluid, and of the bodies of every species without -NAME_viscosity");
+  rows.boolean("fluid_inertia", fluid.inertia,
+               "whether the momentum equation has the convective term v.grad v; false: unsteady Stokes flow");
   rows.real("body_force", fluid.body_force.force, any_number, "length/time^2",
-            "force per mass F cos(angular_frequency t + phase) on fluid and bodies");
-  rows.oscillation("body_force_", fluid.body_force.frequency, fluid.body_force.phase);
+            "amplitude F of the force per mass on fluid and bodies, F cos(angular_frequency t + phase)");
+  rows.oscillation("body_force_", fluid.body_force.frequency, fluid.body_force.phase, " of the force");
 
   rows.group = "Initial flow";
   InitialFlow &initial = config.initial;
-  rows.choice("initial_velocity", initial.kind, initial_velocity_names(),
-              "flow at t = 0; shear_wave_ab: component a varies along b");
+  rows.choice(
+      "initial_velocity", initial.kind, initial_velocity_names(),
+      "flow at t = 0, to which -initial_velocity_mean is added; zero and uniform: nothing but this mean; taylor_green: "
+      "vortices in the x-y plane; taylor_green_3d: vortices in x, y and z; shear_layer: two opposite shear layers in "
+      "y; couette: linear in y between walls; poiseuille: parabolic in y between walls; shear_wave_ab: component a of "
+      "the velocity is a sine along b; random: a solenoidal field of random waves");
   rows.limit("-initial_velocity other than zero, uniform and couette", [&initial] {
     return initial.kind != InitialVelocity::zero && initial.kind != InitialVelocity::uniform &&
            initial.kind != InitialVelocity::couette;
   });
-  rows.real("initial_velocity_amplitude", initial.amplitude, any_number, "length/time", "amplitude of that flow");
+  rows.real("initial_velocity_amplitude", initial.amplitude, any_number, "length/time",
+            "amplitude of the flow that -initial_velocity selects");
   rows.end_limit();
   rows.real("initial_velocity_mean", initial.mean, any_number, "length/time",
-            "mean velocity that is added to the initial flow");
+            "uniform velocity that is added to the initial flow");
   rows.path("initial_state", config.initial_state,
-            "HDF5 file with initial fields, or a snapshot; its fields override the options (docs/outputs.md)")
+            "HDF5 file with initial fields, such as a snapshot; its fields replace those that other options describe "
+            "(docs/outputs.md)")
       .names_file = any_file;
 }
 
 void add_bodies(Rows &rows, Config &config) {
   rows.group = "Bodies";
-  Option &species = rows.add("species", "", "names of the species; each has its own set of the options NAME_...");
+  Option &species = rows.add("species", "",
+                             "names of the species, that is, of groups of bodies with the same shape and material; "
+                             "each has its own set of the options -NAME_...; none: no bodies");
   species.accepted = "a list without spaces of names made of letters, digits and _, beginning with a letter";
   species.default_note = "none";
   species.read = [](const std::string &) { return std::string(); };  // read before this table, which it lengthens
@@ -68,9 +81,9 @@ void add_bodies(Rows &rows, Config &config) {
     for (const SpeciesSpec &spec : config.species) names.push_back(spec.name);
     return join(names, ",");
   };
-  rows.boolean(
-      "body_series", config.body_series,
-      "label, track and measure every body; false saves this cost: no labels, no bodies.h5, no body in snapshots");
+  rows.boolean("body_series", config.body_series,
+               "whether every body is labelled, tracked and measured; false saves this cost, but then there is no "
+               "bodies.h5 and no field body in snapshots");
   for (SpeciesSpec &spec : config.species) {
     rows.group = "Bodies: species " + spec.name;
     add_species_rows(rows, spec, !config.initial_state.empty());
@@ -92,33 +105,42 @@ void add_method(Rows &rows, Config &config) {
   rows.group = "Method";
   Method &method = config.method;
   rows.choice("method", method.kind, method_names,
-              "fast: second order in time, with bodies at half steps; classic: the scheme of the original paper");
+              "numerical method, which sets the defaults of the options below; fast: second order in time, with bodies "
+              "at half steps; classic: the explicit Euler scheme of Sugiyama et al. (2013)");
   const std::size_t parts = rows.rows.size();
   rows.restrict("method", method.kind, method_names, {MethodKind::fast});
   rows.choice("viscous_scheme", method.viscous, {"auto", "rkl", "explicit"},
-              "rkl: super time stepping RKL2; explicit: a single stage; auto: rkl, but an implicit step where "
-              "viscosities differ and no body is rigid");
+              "time integration of the viscous force; rkl: super time stepping RKL2 in several explicit stages; "
+              "explicit: a single stage, which needs short time steps; auto: an implicit step if viscosities differ "
+              "and no body is rigid, otherwise rkl");
   rows.real("viscous_tolerance", method.viscous_tolerance, positive, "",
-            "iterate the implicit viscous step until its residual is below this share of the right-hand side");
+            "relative residual below which the iterations of the implicit viscous step stop; smaller where viscosities "
+            "differ by more than a factor of 4");
   rows.choice("interface_scheme", method.interface, {"plic", "weno5"},
-              "transport of the solid fraction: plic is sharp and conservative; or WENO5");
+              "transport of the solid fraction; plic: a plane in each cut cell, which keeps interfaces sharp and "
+              "conserves volume; weno5: WENO5 differences, which smear interfaces");
   rows.choice("solid_exterior", method.exterior, {"extrapolate", "identity"},
-              "B outside bodies: extrapolated, or reset to I");
+              "left Cauchy-Green tensor B outside the bodies; extrapolate: extrapolated from the body; identity: reset "
+              "to the identity");
   rows.choice("elastic_force", method.elastic_force, {"linear", "constant"},
-              "elastic force within a step: linear in time, or that of its middle");
+              "time dependence of the elastic force within a step; linear: linear in time; constant: the force at the "
+              "middle of the step");
   rows.end_limit();
   rows.may_change = true;
   const Names pressure_names{"acm", "smac", "ksp"};
   rows.choice("pressure_solver", method.pressure, pressure_names,
-              "artificial compressibility, the exact Poisson solution by FFT, or PETSc's by any -pressure_ksp_type and "
-              "-pressure_pc_type");
+              "solver of the pressure; acm: iterations of artificial compressibility; smac: direct solution of the "
+              "Poisson equation by FFT; ksp: PETSc's solver of -pressure_ksp_type and -pressure_pc_type");
   rows.restrict("pressure_solver", method.pressure, pressure_names, {PressureKind::acm});
   rows.integer("acm_iterations_max", method.acm_sweeps_max, at_least_one,
-               "largest number of pressure iterations per step");
-  rows.real("acm_tolerance", method.acm_tolerance, positive, "", "iterate until rms(div v) h/U is below this");
+               "maximum number of pressure iterations in a time step; 1: the single step of the original scheme");
+  rows.real(
+      "acm_tolerance", method.acm_tolerance, positive, "",
+      "value of rms(div v) h/U below which the pressure iterations stop, with h the spacing and U the largest speed");
   rows.integer("acm_search_directions", method.acm_memory, {0, false, 4},
-               "number of increments of earlier steps that are used as search directions");
-  rows.boolean("acm_coarse", method.acm_coarse, "precondition the iterations by a V-cycle over coarse grids");
+               "number of pressure increments of earlier steps that are used as additional search directions");
+  rows.boolean("acm_coarse", method.acm_coarse,
+               "whether the pressure iterations are preconditioned by a multigrid V-cycle");
   rows.end_limit();
   rows.may_change = false;
   for (std::size_t r = parts; r < rows.rows.size(); ++r) rows.rows[r].default_note = by_method(rows.rows[r], method);
@@ -128,10 +150,10 @@ void add_method(Rows &rows, Config &config) {
 void add_profile(Rows &rows, ProfileSpec &profile, int d) {
   const int a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
   const std::string plane{"xyz"[a], ',', "xyz"[b]};
-  Option &row =
-      rows.add(std::string("profile_") + "xyz"[d], "length",
-               std::string("profile of the flow along ") + "xyz"[d] +
-                   ", at the centres of the cells: averaged over planes, " + "or along the line through " + plane);
+  Option &row = rows.add(std::string("profile_") + "xyz"[d], "length",
+                         std::string("profile of the flow along ") + "xyz"[d] +
+                             ", at the centres of the cells; mean: averaged over planes normal to it; " +
+                             "2 numbers: along the line with these coordinates " + plane);
   row.accepted = "mean, or 2 numbers " + plane;
   row.default_note = "none";
   row.read = [&profile, a, b](const std::string &value) {
@@ -153,7 +175,8 @@ void add_profile(Rows &rows, ProfileSpec &profile, int d) {
 void add_samples(Rows &rows, Config &config) {
   SampleControl &samples = config.samples;
   Option &probes =
-      rows.add("probe_points", "length", "points at which probes.csv records the flow, with each row of series.csv");
+      rows.add("probe_points", "length",
+               "points at which probes.csv records velocity and pressure, whenever a row of series.csv is written");
   probes.accepted = "points x,y,z separated by colons, x,y,z:x,y,z";
   probes.default_note = "none";
   probes.read = [&samples](const std::string &value) { return read_points(value, &samples.probes); };
@@ -164,34 +187,36 @@ void add_samples(Rows &rows, Config &config) {
   };
   for (int d = 0; d < 3; ++d) add_profile(rows, samples.profile[d], d);
   rows.real("profile_interval", samples.profile_interval, not_negative, "time",
-            "time between profiles, which are also written at the start and the end; off: only at the end");
+            "time between profiles, which are also written at the start and the end of the run; off: only at the end");
   rows.zero_is("off");
 }
 
 void add_output(Rows &rows, Config &config) {
   rows.group = "Output";
   OutputControl &output = config.output;
-  rows.path("output_dir", output.directory, "directory of all output");
+  rows.path("output_dir", output.directory, "directory of all files that the run writes");
   rows.boolean("output_overwrite", output.overwrite,
-               "replace the run in -output_dir; accepted on the command line only")
+               "whether an earlier run in -output_dir is replaced; accepted on the command line only")
       .command_line = true;
   rows.real("snapshot_interval", output.snapshot_interval, not_negative, "time",
-            "time between snapshots, which are also written at the start and the end; off: no snapshots");
+            "time between snapshots of the fields, which are also written at the start and the end of the run; off: no "
+            "snapshots");
   rows.zero_is("off");
-  rows.choice(
-      "snapshot_times", output.snapshot_exact, {"steps", "exact"},
-      "steps: of the first step at or after each multiple of the interval; exact: interpolated to the multiple");
+  rows.choice("snapshot_times", output.snapshot_exact, {"steps", "exact"},
+              "times of the snapshots; steps: the first time step at or after each multiple of -snapshot_interval; "
+              "exact: interpolated to the multiple itself");
   rows.words("snapshot_fields", output.snapshot_fields,
              {"velocity", "pressure", "solid_fraction", "body", "left_cauchy_green", "wall_shear_stress"},
-             "fields in snapshots");
-  rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"}, "precision of snapshots");
-  rows.choice(
-      "snapshot_format", output.snapshot_vti, {"xdmf", "vti"},
-      "xdmf: one index of all snapshots; vti: also a file for each that every version of VTK and ParaView reads, with "
-      "the wall shear stress always");
-  rows.real("series_interval", output.series_interval, not_negative, "time", "time between rows of series.csv");
+             "fields that snapshots contain");
+  rows.choice("snapshot_precision", output.snapshot_single, {"double", "single"},
+              "precision of the numbers in snapshots; double: 8 bytes; single: 4 bytes");
+  rows.choice("snapshot_format", output.snapshot_vti, {"xdmf", "vti"},
+              "files for ParaView; xdmf: one index of all snapshots; vti: also one .vti file per snapshot, which every "
+              "version of VTK and ParaView reads and which always contains the wall shear stress");
+  rows.real("series_interval", output.series_interval, not_negative, "time",
+            "time between rows of series.csv and between records of bodies.h5");
   rows.zero_is("auto");
-  rows.rows.back().default_note = "auto: time_end/200";
+  rows.rows.back().default_note = "auto: -time_end/200";
   add_samples(rows, config);
 }
 
@@ -200,20 +225,22 @@ void add_checkpoints(Rows &rows, Config &config) {
   CheckpointControl &checkpoint = config.checkpoint;
   rows.limit("-checkpoint_keep > 0", [&checkpoint] { return checkpoint.keep > 0; });
   rows.real("checkpoint_interval", checkpoint.interval, not_negative, "time",
-            "simulated time between checkpoints; off: only by wall time and at the end");
+            "simulated time between checkpoints; off: they are written by wall time and at the end only");
   rows.zero_is("off");
   rows.real("checkpoint_wall_minutes", checkpoint.wall_minutes, not_negative, "minutes",
-            "wall time between checkpoints; off: only by simulated time and at the end");
+            "wall time between checkpoints; off: they are written by simulated time and at the end only");
   rows.zero_is("off");
   rows.end_limit();
   rows.integer("checkpoint_keep", checkpoint.keep, {0, false},
-               "number of checkpoints that are kept; a complete run leaves one of its end, with 0 none");
+               "number of latest checkpoints that are kept during the run; a complete run keeps the one of its end; 0: "
+               "no checkpoints");
   rows.real("stop_after_minutes", checkpoint.stop_after_minutes, not_negative, "minutes",
-            "wall time after which the run writes a checkpoint and ends");
+            "wall time after which the run writes a checkpoint and stops, to be continued with -restart; unlimited: it "
+            "runs to the end");
   rows.zero_is("unlimited");
-  rows.path(
-      "restart", checkpoint.restart,
-      "checkpoint, or output directory, whose newest intact one is used; in the same -output_dir files are continued");
+  rows.path("restart", checkpoint.restart,
+            "checkpoint from which the run continues, or an output directory, of which the newest intact checkpoint is "
+            "used; with the same -output_dir its files are continued");
 }
 
 void add_guards(Rows &rows, Config &config) {
@@ -223,29 +250,35 @@ void add_guards(Rows &rows, Config &config) {
     rows.real("guard_" + name, target, not_negative, "", doc);
     rows.zero_is("off");
   };
-  bound("cfl", guard.cfl, "CFL number, the sum of max |v_i| dt/h_i");
-  bound("divergence", guard.divergence, "rms(div v) h/U, as in series.csv");
-  bound("mach", guard.mach, "largest |v| over the sound speed of artificial compressibility, where there is one");
-  bound("volume_drift", guard.volume_drift, "relative change of the volume of any body");
+  bound("cfl", guard.cfl, "largest CFL number, the sum of max |v_i| dt/h_i over the directions");
+  bound("divergence", guard.divergence, "largest rms(div v) h/U, the column divergence_rms of series.csv");
+  bound("mach", guard.mach,
+        "largest Mach number, |v| over the sound speed of artificial compressibility; checked where the pressure takes "
+        "a single step (-acm_iterations_max 1)");
+  bound("volume_drift", guard.volume_drift, "largest relative change of the volume of a body");
   bound("energy_growth", guard.energy_growth,
-        "energy made by the numerics within any time, relative to the energy held at its beginning and supplied since");
+        "largest energy that numerical errors generate in any part of the run, relative to the energy held at its "
+        "beginning and supplied since");
   bound("memory", guard.memory,
-        "memory that the ranks of a node need, relative to its physical memory; checked before the start");
+        "largest memory that the ranks of a node need, relative to its physical memory; checked before the run starts");
 }
 
 void add_program(Rows &rows, Config &config) {
   rows.group = "Program";
-  rows.boolean("check_only", config.check_only, "validate the case, print derived numbers and stop");
+  rows.boolean("check_only", config.check_only,
+               "whether the program only validates the case and prints derived numbers, such as time step, memory and "
+               "wall time, and stops");
   rows.integer("ranks", config.ranks, {0, false, 1e8},
-               "number of ranks that -check_only assumes; auto: those of mpiexec");
+               "number of MPI ranks that -check_only assumes; auto: the number that mpiexec starts");
   rows.zero_is("auto");
   rows.boolean("print_options", config.print_options,
-               "validate the case, print every option with its resolved value and stop");
-  rows.add("options_file", "", "file of options to include; options of the including file override it").accepted =
-      "only in an options file; a path, from the directory of this file";
+               "whether the program only validates the case, prints every option with its resolved value, and stops");
+  rows.add("options_file", "",
+           "options file to include; options of the including file override those of the included one")
+      .accepted = "only in an options file; a path, from the directory of this file";
   rows.add("help", "",
-           "print all options and stop; -help WORD: those with this word in name, text or values; -help markdown: "
-           "docs/options.md; -help man: a manual page; -h: a summary")
+           "print all options and stop; -help WORD: the options with this word in name, text or values; -help "
+           "markdown: the page docs/options.md; -help man: a manual page; -h: a summary")
       .accepted = "only on the command line";
   rows.add("version", "", "print the version and stop").accepted = "only on the command line";
 }
@@ -254,10 +287,11 @@ void add_program(Rows &rows, Config &config) {
 void add_running(Rows &rows, Config &config) {
   rows.may_change = true;
   rows.group = "Time";
-  rows.real("time_end", config.time.end, positive, "time", "end of the run").required = true;
+  rows.real("time_end", config.time.end, positive, "time", "simulated time at which the run ends").required = true;
   rows.real("time_step", config.time.step, not_negative, "time", "time step; auto: the largest stable one");
   rows.zero_is("auto");
-  rows.integer("time_steps_max", config.time.steps_max, {0, false}, "largest number of steps");
+  rows.integer("time_steps_max", config.time.steps_max, {0, false},
+               "number of time steps after which the run ends, if -time_end has not been reached");
   rows.zero_is("unlimited");
   add_output(rows, config);
   add_checkpoints(rows, config);
