@@ -29,7 +29,7 @@ std::string read_number(const std::string &item, const Range &range, T *target) 
   if (item.size() > 1 && item[0] == '+' && item[1] != '-') ++begin;
   T value{};
   const auto [stop, status] = std::from_chars(begin, end, value);
-  if (status == std::errc::result_out_of_range) return quoted(item) + " does not fit";
+  if (status == std::errc::result_out_of_range) return quoted(item) + " does not fit into a number of this kind";
   if (status != std::errc{} || stop != end)
     return quoted(item) + (std::is_integral_v<T> ? " is not an integer" : " is not a number");
   if (!std::isfinite(static_cast<double>(value))) return quoted(item) + " is not finite";

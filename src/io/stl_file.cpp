@@ -71,7 +71,7 @@ std::string read_binary(std::ifstream &stream, std::uintmax_t size, std::vector<
     const Solid solid = solid_at(stream, begin, size);
     if (begin > 0 && solid.count == 0) break;
     if (!solid.fits && begin > 0)
-      return "what follows its " + std::to_string(triangles->size()) +
+      return "the data after its " + std::to_string(triangles->size()) +
              " triangles is not another solid; the file is damaged";
     if (!solid.fits)
       return begin + header_bytes > size

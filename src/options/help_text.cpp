@@ -158,7 +158,9 @@ std::string help_markdown() {
             " | " + option.accepted + " |\n";
   }
   text += "\n## PETSc\n\nPETSc's own options pass through: `" + petsc_names() + "`\n";
-  text += "\n## Former names\n\nThese names are refused with the present one.\n\n| former | present |\n|---|---|\n";
+  text +=
+      "\n## Former names\n\nThese names are refused; the message gives the present name.\n\n| former | present "
+      "|\n|---|---|\n";
   for (const auto &[former, now] : renamed_options()) text += "| `-" + former + "` | `-" + now + "` |\n";
   return text;
 }
@@ -179,10 +181,10 @@ std::string man_page() {
             troff(option.accepted) + "\n";
   }
   return text + ".SS PETSc\nPETSc's own options pass through: " + troff(petsc_names()) + "\n" +
-         ".SH EXIT STATUS\n0 fine, 1 failed, 2 wrong input (nothing written), 3 wrong numbers or a guard.\n" +
+         ".SH EXIT STATUS\n0: the run reached its end. 1: failure. 2: invalid input, nothing was written. 3: numbers "
+         "that are not finite, or a guard.\n" +
          ".SH FILES\nFrom the directory of the program: cases in ../share/eulastic/options, scripts in "
-         "../share/eulastic/scripts, documents "
-         "in ../share/doc/eulastic.\n";
+         "../share/eulastic/scripts, documentation in ../share/doc/eulastic.\n";
 }
 
 }  // namespace eulastic

@@ -76,7 +76,7 @@ std::string check_petsc_value(const std::string &name, const std::string &value,
   // PETSc looks at this one after the run, when it is too late.
   if (name == "log_view" && value[0] != ':' && value.rfind("ascii", 0) != 0)
     return "-log_view: \"" + value +
-           "\" is no viewer; accepted: nothing, :FILE or :FILE:ascii_xml, ascii_flamegraph, ...";
+           "\" is not a viewer; accepted: no value, :FILE or :FILE:ascii_xml, ascii_flamegraph, ...";
   return on_rank_0([&] {
     std::error_code ignored;
     for (const std::string &file : possible_files(value)) {

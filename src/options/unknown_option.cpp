@@ -96,12 +96,12 @@ const std::vector<Feature> called_otherwise{
     {{"outlet", "outlets"},
      "is called outflow here, or pressure where the pressure is given: -boundary_xmax outflow, -boundary_xmax "
      "pressure with -boundary_xmax_pressure"},
-    {{"time_integrator"}, "is -method: fast is of second order in time, classic plain Euler"},
+    {{"time_integrator"}, "is called -method here: fast is of second order in time, classic is explicit Euler"},
     {{"skalak"}, "is a law of membranes: -NAME_law membrane with -NAME_membrane_law skalak"},
 };
 
 const std::vector<Feature> missing{
-    {{"density"}, "bodies have the density of the fluid: -fluid_density is that of both"},
+    {{"density"}, "bodies have the density of the fluid: -fluid_density sets both"},
     {{"buoyancy", "gravity", "sedimentation"},
      "bodies are as dense as the fluid, so that gravity moves nothing; -body_force drives both, -NAME_body_force one "
      "species alone"},
@@ -111,15 +111,16 @@ const std::vector<Feature> missing{
      "of a direction, -boundary_xmin and -boundary_xmax for each"},
     {{"prescribed", "torque"},
      "bodies are carried by the flow, or are rigid (-NAME_law rigid) and move as -NAME_velocity and "
-     "-NAME_angular_velocity prescribe; a force on a rigid body cannot be prescribed"},
-    {{"shell", "plate"}, "membranes (-NAME_law membrane) are thin: they resist shear, change of area and bending"},
+     "-NAME_angular_velocity prescribe; a force or torque on a rigid body cannot be prescribed"},
+    {{"shell", "plate"},
+     "bodies may have a thin membrane (-NAME_law membrane), which resists shear, area dilation and bending"},
     {{"marangoni", "surfactant", "wetting"},
      "-NAME_surface_tension is constant for a species, and surfaces meet walls at 90 degrees"},
     {{"poisson", "youngs", "young", "bulk", "compressibility", "compressible", "lame"},
      "fluid and bodies are incompressible; -NAME_shear_modulus is a third of Young's modulus"},
     {{"plastic", "plasticity", "viscoelastic", "fibre", "fiber", "anisotropy", "anisotropic", "active", "damage",
       "ogden", "hookean", "stvk", "yeoh", "fung"},
-     "bodies are isotropic and elastic, neo_hookean or mooney_rivlin, beside a viscosity"},
+     "bodies are isotropic and elastic (-NAME_law neo_hookean or mooney_rivlin), with a viscosity (-NAME_viscosity)"},
     {{"newtonian", "carreau", "casson", "power law", "powerlaw", "bingham", "herschel", "quemada", "shear thinning",
       "rheology", "turbulence", "turbulent", "les", "rans", "smagorinsky"},
      "the fluid is Newtonian (-fluid_viscosity), a species may have another viscosity (-NAME_viscosity), and every "
@@ -131,7 +132,7 @@ const std::vector<Feature> missing{
      "-adhesion; there is no other contact law"},
     {{"refinement", "refine", "amr", "adaptive", "stretching", "grading", "unstructured"},
      "the grid is uniform; -grid_cells and -grid_length"},
-    {{"gpu", "cuda", "hip"}, "the program runs on processors only, with ranks of MPI and -threads"},
+    {{"gpu", "cuda", "hip"}, "the program runs on CPUs only, with MPI ranks and -threads"},
 };
 
 // The first of its words that `text`, lower-case words with a blank around each, has; or nothing.

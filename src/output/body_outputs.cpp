@@ -69,8 +69,8 @@ std::string Outputs::strain_warning() {
   }
   if (once(m.stretch, stretched, &stretch_warned_)) {
     return print(
-        "t = %.9g: body %d is stretched by a factor of %.3g, above %g: its strain is hard to resolve; use "
-        "more -grid_cells, and read the verdict at the end",
+        "t = %.9g: body %d is stretched by a factor of %.3g, above %g: its strain is hard to resolve; use more "
+        "-grid_cells, and read the verdict at the end of the run",
         m.time, m.stretch.label, m.stretch.value, stretched);
   }
   return {};

@@ -34,7 +34,7 @@ Stop not_finite(const Solver &solver, const FlowExtremes &extremes) {
   return {"nonfinite", where(state, place_of_cell(solver.domain(), extremes.first_non_finite)) +
                            "a field is not finite; " + print("dt = %.3g, ", state.dt) +
                            (broken ? print("beyond the %s limit; lower -time_step", broken)
-                                   : std::string("within all known limits; lower -time_step, more -grid_cells"))};
+                                   : std::string("within all known limits; lower -time_step or raise -grid_cells"))};
 }
 
 Stop stop_reason(const Solver &solver) {
@@ -73,7 +73,7 @@ PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &ext
   stop->reason = "guard";
   stop->message =
       where(state, place) +
-      (still ? print("the time step %.3g is too short to change the time; check the units, give -time_step", dt)
+      (still ? print("the time step %.3g is too short to change the time; check the units or set -time_step", dt)
              : print("CFL number %.4g, the sum of |v_i| dt/h_i, is above -guard_cfl %g; lower -time_step "
                      "(%.3g now)",
                      courant, control_.cfl, dt));
@@ -94,8 +94,8 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
   if (beyond(m.energy_made, control_.energy_growth)) {
     what = print(
         "the numerics have generated energy, %.3g of what the run held and was supplied with meanwhile, above "
-        "-guard_energy_growth %g; lower -time_step (%.3g now), more -grid_cells, or -series_interval if rows are far "
-        "apart",
+        "-guard_energy_growth %g; lower -time_step (%.3g now), raise -grid_cells, or shorten -series_interval if the "
+        "rows of series.csv are far apart",
         m.energy_made, control_.energy_growth, state.dt);
   } else if (beyond(divergence, control_.divergence)) {
     what = print("rms(div v) h/U = %.3g is above -guard_divergence %g; %s (%.3g now)", divergence, control_.divergence,
@@ -108,8 +108,8 @@ PetscErrorCode Guards::check(const Solver &solver, const Measured &m, Stop *stop
         m.mach, control_.mach, state.dt);
   } else if (beyond(m.resolved_drift.value, control_.volume_drift)) {
     what = print(
-        "the volume of body %d has changed by %.3g of its own, above -guard_volume_drift %g; more "
-        "-grid_cells, -interface_scheme plic, or %s (%.3g now)",
+        "the volume of body %d has changed by %.3g of its initial value, above -guard_volume_drift %g; raise "
+        "-grid_cells, use -interface_scheme plic, or %s (%.3g now)",
         m.resolved_drift.label, m.resolved_drift.value, control_.volume_drift, pressure_advice_.c_str(), state.dt);
     find = nullptr;
     place = m.drifting_place;

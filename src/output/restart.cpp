@@ -74,7 +74,8 @@ PetscErrorCode load(const ParseResult &parsed, const std::string &path, Solver *
   if (file.version() != EULASTIC_VERSION)
     (void)PetscFPrintf(
         solver->domain().comm(), stderr, "eulastic: warning: %s\n",
-        one_line(path + " was written by version " + file.version() + ": the same bits are not certain").c_str());
+        one_line(path + " was written by version " + file.version() + ": the results may differ in the last bits")
+            .c_str());
   PetscFunctionReturn(0);
 }
 
@@ -142,7 +143,9 @@ PetscErrorCode restart(const ParseResult &parsed, Solver *solver, RunPosition *p
   const std::vector<std::string> all =
       list_everywhere(is_directory ? source : fs::absolute(source, error).parent_path());
   const std::vector<std::string> candidates = is_directory ? all : std::vector<std::string>{source};
-  if (candidates.empty()) *refusal = "-restart: there is no checkpoint in " + source.string();
+  if (candidates.empty())
+    *refusal = "-restart: there is no checkpoint in " + source.string() +
+               "; accepted: a checkpoint, or a directory with checkpoints";
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     std::string damage;
     *path = candidates[c];

@@ -47,7 +47,7 @@ void end_now(int) { _exit(1); }
 void end_all(int signal) {
   char text[160];
   (void)std::snprintf(text, sizeof text,
-                      "eulastic: error: rank %d received signal %d (%s): a defect of the program or the machine\n",
+                      "eulastic: error: rank %d received signal %d (%s): a fault of the program or the machine\n",
                       own_rank, signal, signal == SIGSEGV ? "invalid memory" : sigabbrev_np(signal));
   say(text);
   handle(SIGALRM, end_now, 0);

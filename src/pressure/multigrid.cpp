@@ -177,8 +177,8 @@ std::string Multigrid::shares(const Domain &domain) {
     double &cells = levels[l]->partition().ranks() == 1 ? gathered : joined;
     cells = std::max(cells, levels[l]->box().domain_cell_count());
   }
-  const std::string fewer = joined > 0 ? print(", on fewer ranks from %.0f cells on", joined) : "";
-  return print("%zu levels%s; the one of %.0f cells goes to every rank, %.4g MB each time", levels.size(),
+  const std::string fewer = joined > 0 ? print(", on fewer ranks from the level of %.0f cells on", joined) : "";
+  return print("%zu levels%s; the level of %.0f cells goes to every rank, %.4g MB each time", levels.size(),
                fewer.c_str(), gathered, 1e-6 * sizeof(double) * gathered);
 }
 

@@ -286,7 +286,7 @@ PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
                         run->solver.state().time, static_cast<long long>(run->solver.state().step)));
   if (thrown_away > 0)
     PetscCall(PetscPrintf(domain.comm(),
-                          "later output in the directory, %.3g of simulated time, is discarded and computed again\n",
+                          "output after this time, %.3g of simulated time, is discarded and computed again\n",
                           thrown_away));
   PetscFunctionReturn(0);
 }

@@ -55,7 +55,9 @@ std::string read_region(const DomainShape &grid, AdhesionPair *pair) {
       });
   if (!wrong.empty()) return wrong;
   pair->region.cells = mask;
-  return any ? "" : option + ": " + pair->region.file.path + " has no cell in the box; accepted: a file with some";
+  return any ? ""
+             : option + ": " + pair->region.file.path +
+                   " covers no cell of the box; accepted: a file that covers at least one cell";
 }
 
 // Whether the second partner is a surface on the grid: of a rigid or an anchored species.
@@ -73,10 +75,10 @@ std::string check_species_of(const Config &config, const AdhesionPair &pair) {
     return spec.contact == Contact::merge ? "no -" + spec.name + "_contact merge" : config.why_no_boxes(spec);
   };
   if (const std::string needed = needs(pair.first); !needed.empty())
-    return "-adhesion: the first species of " + pair.name + " needs " + needed;
+    return "-adhesion: the first species of " + pair.name + " cannot adhere as it is; accepted: " + needed;
   if (pair.to_wall() || adheres_to_grid(config, pair) || needs(pair.second).empty()) return {};
-  return "-adhesion: the second species of " + pair.name + " needs " + needs(pair.second) +
-         ", or to be rigid or anchored";
+  return "-adhesion: the second species of " + pair.name + " cannot adhere as it is; accepted: " + needs(pair.second) +
+         ", or rigid or anchored bodies";
 }
 
 std::string check_pair(const Config &config, const AdhesionPair &pair) {
@@ -84,19 +86,21 @@ std::string check_pair(const Config &config, const AdhesionPair &pair) {
   const double spacing = config.grid.longest_spacing(), farthest = foot_reach * config.grid.shortest_spacing();
   if (pair.law.reach < spacing)
     return option_of(pair, "reach") + ": " + to_text(pair.law.reach) +
-           " is less than a cell, so that hydrodynamics would hold surfaces apart; accepted: at least " +
+           " is less than a cell, but the fluid on the grid keeps surfaces farther apart; accepted: at least " +
            to_text(spacing);
   const bool on_grid = adheres_to_grid(config, pair);
   const std::string region = option_of(pair, pair.region.file.path.empty() ? "region" : "region_file");
   if (!pair.to_wall() && !on_grid && pair.region.is_given())
-    return region + ": applies only with a wall, or a species that is rigid or anchored";
+    return region + ": applies only to a wall, or to a second species that is rigid or anchored";
   if (on_grid && pair.law.reach > farthest)
     return option_of(pair, "reach") + ": " + to_text(pair.law.reach) + " is more than " + std::to_string(foot_reach) +
-           " cells, as far as surfaces on the grid are looked for; accepted: at most " + to_text(farthest);
+           " cells, the largest distance at which surfaces on the grid are searched; accepted: at most " +
+           to_text(farthest);
   if (pair.to_wall() && !has_wall(config, pair))
     return pair.region.is_given()
                ? region + ": no wall of the box is in it; accepted: a region that holds part of a wall"
-               : "-adhesion: " + pair.name + " without a wall; accepted: with a -boundary that is a wall";
+               : "-adhesion: " + pair.name +
+                     " in a box without a wall; accepted: at least one boundary of the kind wall";
   return {};
 }
 

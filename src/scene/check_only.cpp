@@ -42,16 +42,15 @@ public:
                 print("%d x %d x %d = %d, about %.0f cells each", parts[0], parts[1], parts[2], ranks, cells / ranks));
     if (ranks > 1) boxes(report, parts);
     if (cells > std::numeric_limits<PetscInt>::max())
-      report.line(
-          "warning",
-          print("needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev): this one counts to %.0f cells",
-                double(std::numeric_limits<PetscInt>::max())));
+      report.line("warning", print("this case needs a PETSc with 64-bit indices (Debian: libpetsc64-real-dev); this "
+                                   "one can number at most %.0f cells",
+                                   double(std::numeric_limits<PetscInt>::max())));
     if (ranks > 1 && config_.method.pressure == PressureKind::acm && !config_.method.is_single_acm_step() &&
         config_.method.acm_coarse)
       report.line("V-cycle", Multigrid::shares(Domain::planned(config_.grid, ranks)));
     const double bytes = bytes_per_rank(config_, parts);
-    report.line("memory", print("%.4g GB for fields, %.4g GB per rank; this machine has %.4g GB", 1e-9 * bytes * ranks,
-                                1e-9 * bytes, 1e-9 * memory_limit()));
+    report.line("memory", print("%.4g GB for all fields, %.4g GB per rank; this machine has %.4g GB",
+                                1e-9 * bytes * ranks, 1e-9 * bytes, 1e-9 * memory_limit()));
     if (const double boxed = bytes_in_boxes(config_); boxed > 0)
       report.line("bodies in boxes (estimate)", print("%.4g GB per rank, part of the memory", 1e-9 * boxed / ranks));
   }
@@ -66,8 +65,8 @@ public:
       in_memory *= box[d] + (d < dimension_ ? 2 * config_.grid.ghosts : 0);
       around *= std::min(parts[d], 3);
     }
-    report.line("largest box of a rank", print("%d x %d x %d cells, %.3g times as many with the ghosts in memory",
-                                               box[0], box[1], box[2], in_memory / own));
+    report.line("largest box of a rank", print("%d x %d x %d cells, %.3g times as many in memory with ghosts", box[0],
+                                               box[1], box[2], in_memory / own));
     report.line("exchange of the velocity",
                 print("%d neighbours, %.3g values per cell and component, %.4g MB for each rank", around - 1,
                       travelling / own - 1, 8e-6 * dimension_ * (travelling - own)));
@@ -107,7 +106,7 @@ public:
     };
     if (speed == 0) {
       report.line("flow", print("none (no force, pressure, moving wall, inlet or initial velocity)%s",
-                                stretched() ? ", but for what stretched bodies or -initial_state drive" : ""));
+                                stretched() ? ", but for what stretched bodies or -initial_state cause" : ""));
     } else {
       std::optional<double> reynolds;
       if (!scale.speed_is_bound && nu > 0) reynolds = speed * scale.length / nu;
@@ -126,9 +125,10 @@ public:
       if (modulus > 0 && speed > 0) capillary(spec, config_.fluid.viscosity / modulus, "/ shear modulus");
       const Membrane &membrane = spec.membrane;
       if (spec.is_membrane())
-        report.line("membrane of " + spec.name,
-                    print("moduli of shear %.6g and of area %.6g, of bending %.6g", membrane.shear_modulus,
-                          membrane.largest_modulus() - membrane.shear_modulus, membrane.bending_modulus));
+        report.line(
+            "membrane of " + spec.name,
+            print("shear modulus %.6g, area dilation modulus %.6g, bending modulus %.6g", membrane.shear_modulus,
+                  membrane.largest_modulus() - membrane.shear_modulus, membrane.bending_modulus));
       const Real3 &axes = spec.semi_axes;
       const double radius = spec.shape == Shape::ellipsoid ? std::cbrt(axes[0] * axes[1] * axes[2]) : spec.radius;
       if (spec.surface_tension > 0 && radius > 0 && speed > 0)

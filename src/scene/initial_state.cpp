@@ -72,7 +72,8 @@ PetscErrorCode InitialState::check_names() {
     known.insert(base);
     for (const SpeciesSpec &species : config_->species) known.insert(base + "_" + species.name);
     if (config_->species.empty() && file_.has(base))
-      PetscCall(fail("dataset " + base + " belongs to a species; accepted: -species and its options as well"));
+      PetscCall(
+          fail("dataset " + base + " belongs to a species; accepted: with -species and the options of the species"));
   }
   for (const std::string &name : file_.datasets()) {
     if (known.count(name) == 0 && name.rfind("wall_shear_stress", 0) != 0)
@@ -175,7 +176,7 @@ PetscErrorCode InitialState::read_phase(const SpeciesSpec &species, int first_la
   const std::string fraction = open_ ? name_for("solid_fraction", species) : std::string();
   if (species.shape == Shape::state && fraction.empty())
     PetscCall(
-        fail("dataset solid_fraction is missing; accepted: with this dataset, or with -" + species.name + "_shape"));
+        fail("dataset solid_fraction is missing; accepted: a file with this dataset, or -" + species.name + "_shape"));
   if (!open_) PetscFunctionReturn(0);
   if (!fraction.empty()) {
     PetscCall(read(fraction, at_centre, zero_to_one, phase->fraction[0]));

@@ -150,8 +150,8 @@ PetscErrorCode check_sizes(MPI_Comm comm, const Config &config, std::string *ref
     problem = too_little(node_ranks, needed, limit, share);
   } else if (values > std::numeric_limits<PetscInt>::max()) {
     problem = print(
-        "-grid_cells: a rank would hold a field of %.0f numbers, more than this PETSc can count; accepted: "
-        "at most %.0f, so more ranks or a PETSc of 64-bit indices",
+        "-grid_cells: a rank would hold a field of %.0f numbers, more than this PETSc can count; accepted: at most "
+        "%.0f, that is, more ranks or a PETSc with 64-bit indices",
         values, double(std::numeric_limits<PetscInt>::max()));
   }
   PetscCall(catch_together([&] { return fail_together(comm, problem); }, refusal));

@@ -74,7 +74,7 @@ std::string extend_table(const OpeningSpec &spec, const std::string &side, const
     return side + "_table_hold: given beside " + side + "_table_period; accepted: one of them";
   const std::string own = file + " says \"# period " + to_text(course->period) + "\"";
   if (spec.hold && course->period > 0)
-    return side + "_table_hold: " + own + " and cannot be held, too; accepted: false, or a table without a period";
+    return side + "_table_hold: " + own + " and cannot also be held; accepted: false, or a table without a period";
   if (spec.hold) return {};
   if (spec.period > 0 && course->period > 0 && std::fabs(spec.period / course->period - 1) > round_off)
     return side + "_table_period: " + to_text(spec.period) + ", but " + own + "; accepted: the same, or one of them";
@@ -83,7 +83,7 @@ std::string extend_table(const OpeningSpec &spec, const std::string &side, const
   const double first = course->table.front()[0], last = course->table.back()[0];
   if (first <= 0 && last >= end * (1 - round_off)) return {};
   return option + ": " + file + " goes from time " + to_text(first) + " to " + to_text(last) + ", the run from 0 to " +
-         to_text(end) + "; accepted: a table of all the run, " + side +
+         to_text(end) + "; accepted: a table that covers the run, " + side +
          "_table_period to repeat it (in the file: # period T), or " + side +
          "_table_hold true to hold its first and its last value";
 }

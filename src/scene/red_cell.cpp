@@ -20,8 +20,8 @@ std::vector<std::string> red_cell_lines(const Config &config) {
     if (spec.law != Law::red_cell) continue;
     const Membrane &m = spec.membrane;
     lines.push_back(
-        print("red cells %s: surface shear modulus %g, modulus of area %g (a real one is 1000 times as stiff), "
-              "bending modulus %g, viscosity %g of %g outside",
+        print("red cells %s: surface shear modulus %g, area dilation modulus %g (that of a real cell is 1000 times as "
+              "large), bending modulus %g, viscosity %g inside and %g outside",
               spec.name.c_str(), m.shear_modulus, m.largest_modulus() - m.shear_modulus, m.bending_modulus,
               spec.viscosity.value_or(config.fluid.viscosity), config.fluid.viscosity));
   }

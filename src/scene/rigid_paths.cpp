@@ -128,9 +128,12 @@ std::string check_paths(const Config &config) {
     if (!spec.travels(dimension)) continue;
     const std::string option = "-" + spec.name + (spec.turns(dimension) ? "_angular_velocity" : "_velocity") +
                                ": a body that moves or rotates through the grid ";
-    if (!config.method.staggered()) return option + "needs -method fast; accepted here: along itself, or 0,0,0";
+    if (!config.method.staggered())
+      return option + "needs -method fast; accepted here: motion along the surface of the body, or 0,0,0";
     if (config.method.is_single_acm_step())
-      return option + "needs an increment of the pressure; accepted here: -acm_iterations_max > 1, or along itself";
+      return option +
+             "needs more than one pressure iteration per step; accepted here: -acm_iterations_max > 1, or motion along "
+             "the surface of the body";
     if (has_inlet_generators(config.sides))
       return option + "cannot be combined with an inlet generator; accepted: without -boundary_SIDE_generator_length";
     if (spec.shape == Shape::voxels) continue;

@@ -42,7 +42,7 @@ std::string check_grid(const Config &config) {
   double cells = 1;
   for (int n : config.grid.cells) cells *= n;
   if (!config.check_only && cells > std::numeric_limits<PetscInt>::max())
-    return "-grid_cells: more cells than this PETSc can number; accepted: at most " +
+    return "-grid_cells: there are more cells than this PETSc can number; accepted: at most " +
            std::to_string(std::numeric_limits<PetscInt>::max()) +
            ", or a build with a PETSc of 64-bit indices (Debian: libpetsc64-real-dev)";
   return {};
@@ -105,7 +105,7 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (is_anchored(spec.shape) || spec.shape == Shape::cylinder || spec.anchored.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
   if (!config.initial_state.empty() || spec.shape == Shape::state)
-    return law + "an initial shape, which -initial_state does not give";
+    return law + "an initial shape, which -initial_state does not contain; accepted: a run without -initial_state";
   if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
     return "-" + spec.name + "_spontaneous_curvature: requires a bending modulus; accepted: 0, or -" + spec.name +
            "_bending_modulus > 0";
@@ -134,24 +134,24 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
   for (int d = 0; d < 3; ++d) {
     const bool about_axis = spec.shape == Shape::cylinder && d == spec.axis;
     if (motion.angular_velocity[d] != 0 && ((flat(config) && d != 2) || !(closed || about_axis)))
-      return no(
-          "angular_velocity",
-          "cannot rotate this body about this axis; accepted: any axis of a sphere, ellipsoid, biconcave or voxels, "
-          "that of a cylinder, z alone in 2-D, else 0,0,0");
+      return no("angular_velocity",
+                "cannot rotate this body about this axis; accepted: any axis of a sphere, ellipsoid, biconcave or "
+                "voxels; the axis of a cylinder; in 2-D z only; otherwise 0,0,0");
     if (motion.velocity[d] == 0) continue;
     if (flat(config) && d == 2 && spec.shape != Shape::slab)
       return no("velocity", "the body moves along z in 2-D (one cell in z); accepted: 0 along z");
     const bool fluid_around = closed || (spec.shape == Shape::cylinder && !(flat(config) && spec.axis != 2));
     if (spec.shape == Shape::slab && d == spec.axis) {
       if (!piston_has_way_out(config, spec))
-        return no(
-            "velocity",
-            "the slab would compress fluid that cannot leave the box; accepted: no other slab across its way, and a "
-            "pressure, outflow or periodic boundary at both ends of it; or a pressure or outflow boundary along it");
+        return no("velocity",
+                  "the slab would compress fluid that cannot leave the box; accepted: no other slab in its way, and "
+                  "pressure, outflow or periodic boundaries at both ends of its way; or a pressure or outflow boundary "
+                  "beside it");
     } else if (!spec.slides(d) && !fluid_around)
-      return no("velocity",
-                "would carry the body through the grid, and fluid cannot pass around it; accepted: along the axis of "
-                "a tube, any of a slab, sphere, ellipsoid, biconcave, voxels or cylinder, else 0,0,0");
+      return no(
+          "velocity",
+          "would carry the body through the grid, and fluid cannot pass around it; accepted: a velocity along the axis "
+          "of a tube; any velocity of a slab, sphere, ellipsoid, biconcave, voxels or cylinder; otherwise 0,0,0");
     if (spec.slides(d) && config.grid.boundary[d] == Boundary::wall)
       return no("velocity",
                 "the body would slide into the boundaries of the box; accepted: 0 along a direction that is not "
@@ -164,11 +164,11 @@ std::string check_rigid(const Config &config, const SpeciesSpec &spec) {
 std::string check_shape(const Config &config, const SpeciesSpec &spec) {
   const std::string own = "-" + spec.name + "_";
   if (spec.shape == Shape::state && config.initial_state.empty())
-    return own + "shape: state is that of -initial_state, which is not given; accepted: another shape";
+    return own + "shape: state requires -initial_state, which is not given; accepted: another shape, or -initial_state";
   const bool varies_along_axis =
       spec.shape == Shape::biconcave || spec.shape == Shape::slab || spec.shape == Shape::constricted_tube;
   if (flat(config) && varies_along_axis && spec.axis == 2)
-    return own + "axis: z in 2-D (one cell in z); accepted: x, y";
+    return own + "axis: z cannot be the axis of this shape in 2-D (one cell in z); accepted: x, y";
   if (spec.shape == Shape::constricted_tube && !(spec.throat_radius < spec.radius))
     return own + "throat_radius: " + to_text(spec.throat_radius) +
            " is no narrower than the tube; accepted: less than " + to_text(spec.radius) + ", -" + spec.name + "_radius";
@@ -186,10 +186,11 @@ std::string check_placement(const Config &config, const SpeciesSpec &spec) {
   const std::string own = "-" + spec.name + "_";
   const bool random = spec.placement == Placement::random;
   if ((is_from_file(spec.shape) || is_anchored(spec.shape)) && spec.placement != Placement::one)
-    return own + "placement: a slab, a tube, voxels and state are one body; accepted: one";
+    return own + "placement: a slab, a tube, voxels and state are a single body; accepted: one";
   if (spec.placement == Placement::lattice && spec.number >= 0)
-    return own + "count: with a lattice accepted: 3 integers >= 1, separated by commas";
-  if (random && spec.count != Int3{1, 1, 1}) return own + "count: with random placement accepted: an integer >= 0";
+    return own + "count: a lattice needs a number for each direction; accepted: 3 integers >= 1, separated by commas";
+  if (random && spec.count != Int3{1, 1, 1})
+    return own + "count: random placement needs a single number; accepted: an integer >= 0";
   if (flat(config) && spec.count[2] != 1)
     return own + "count: " + std::to_string(spec.count[2]) + " along z in 2-D (one cell in z); accepted: 1 along z";
   const double bodies = double(spec.count[0]) * spec.count[1] * spec.count[2];
@@ -210,7 +211,7 @@ std::string check_placement(const Config &config, const SpeciesSpec &spec) {
 std::string check_material(const Config &config, const SpeciesSpec &spec) {
   const std::string own = "-" + spec.name + "_";
   if (spec.viscosity && config.fluid.viscosity == 0)
-    return own + "viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without";
+    return own + "viscosity: needs a viscous fluid; accepted: -fluid_viscosity > 0, or without this option";
   if (const std::string wrong = check_vector(config, spec.name + "_body_force", spec.body_force.force); !wrong.empty())
     return wrong;
   if (spec.initial_stretch != Real3{1, 1, 1} && !spec.material().carries_tensor())

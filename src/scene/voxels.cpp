@@ -100,8 +100,9 @@ private:
                                  const Real3 &high) {
     for (int d = 0; d < 3; ++d)
       if (!(low[d] < grid.length[d] && high[d] > 0)) {
-        return file + print(": it is outside the box: %c = %.6g ... %.6g; accepted: a part within 0 ... %.6g", "xyz"[d],
-                            low[d], high[d], grid.length[d]);
+        return file +
+               print(": it is outside the box: %c = %.6g ... %.6g; accepted: a volume that reaches into 0 ... %.6g",
+                     "xyz"[d], low[d], high[d], grid.length[d]);
       }
     return {};
   }
@@ -176,10 +177,12 @@ std::string measure(const SpeciesSpec &spec, DomainShape grid, SolidMask *mask, 
   *volume = sum;
   if (!wrong.empty()) return wrong;
   if (sum == 0)
-    return about(option_of(spec), spec.voxels.path + " has nothing solid in the box; accepted: a body that is");
-  if (all && spec.law == Law::rigid)
     return about(option_of(spec),
-                 spec.voxels.path + " fills all of the box and leaves no fluid; accepted: a part of the box");
+                 spec.voxels.path + " has nothing solid in the box; accepted: a file with a solid part inside the box");
+  if (all && spec.law == Law::rigid)
+    return about(
+        option_of(spec),
+        spec.voxels.path + " fills all of the box and leaves no fluid; accepted: a body that fills a part of the box");
   return {};
 }
 

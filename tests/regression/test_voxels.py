@@ -342,7 +342,7 @@ class Voxels(WithRoom):
                               (binary([], 0), "no triangles"), (ascii_stl(box)[:-20], "truncated"),
                               (ascii_stl(box).replace(b"outer", b"inner", 1), "triangle 1"), (binary(far), "outside"),
                               (binary(box + box), "crosses itself"), (b"nothing", "too short"),
-                              (binary(box) + 100 * b"x", "what follows its 12 triangles is not another solid"),
+                              (binary(box) + 100 * b"x", "the data after its 12 triangles is not another solid"),
                               (ascii_stl(box) + b"facet", "triangle 13"),
                               (ascii_stl(box).replace(b"0.1", b"nan", 1), "triangle 1")):
             with self.subTest(says):

@@ -21,7 +21,7 @@ TEST(OptionRefusals, UnknownNames) {
        {"-dt 1", {"unknown option -dt; see -help"}},
        {"-ksp_type cg", {"unknown option -ksp_type; accepted with -pressure_solver ksp: -pressure_ksp_type"}},
        {"-log_vew", {"nearest known: -log_view"}},
-       {"-log_view log.txt", {"-log_view: \"log.txt\" is no viewer", ":FILE"}},
+       {"-log_view log.txt", {"-log_view: \"log.txt\" is not a viewer", ":FILE"}},
        {"-options_file x", {"-options_file"}},
        {"-log", {"unknown option -log"}},
        {"-log_", {"unknown option -log_"}},

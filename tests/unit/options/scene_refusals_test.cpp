@@ -113,7 +113,7 @@ TEST(SceneRefusals, ShapesAndPlacements) {
         {"-a_throat_radius: 0.2 is no narrower", "accepted: less than 0.2, -a_radius"}},
        {tube + "x -a_throat_length 0 -a_throat_radius .1", {"-a_throat_length: ", "accepted: "}},
        {"-grid_cells 8,8,1 -a_shape constricted_tube -a_radius .2 -a_throat_length .4 -a_throat_radius .1 -a_axis z",
-        {"-a_axis: z in 2-D", "accepted: x, y"}},
+        {"-a_axis: z cannot be the axis of this shape in 2-D", "accepted: x, y"}},
        {tube + "x -a_throat_length .4 -a_throat_radius .1 -a_placement lattice", {"-a_placement: ", "accepted: one"}},
        {"-grid_cells 8,8,8 -a_shape slab -a_interval 1,1", {"-a_interval: ", "accepted: low,high with low < high"}},
        {"-grid_cells 8,8,8 -a_shape slab -a_interval 1,2",
