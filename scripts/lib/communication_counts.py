@@ -1,4 +1,4 @@
-"""What ranks send in a time step, counted by tools/count_communication.cpp.
+"""Counts what ranks send in a time step, with tools/count_communication.cpp.
 
     run = Counting(["options/channel_rbc.opts", "-method", "classic"], ranks=8)
     counts = run.per_step(2, 4)
@@ -27,7 +27,7 @@ def program():
 
 
 def library():
-    """The library that counts, built if it is missing."""
+    """Returns the path of the counting library; builds it if it is missing."""
     path = pathlib.Path(os.environ.get("EULASTIC_COUNT_LIBRARY", ROOT / "build/release/libcount_communication.so"))
     if not path.exists():
         subprocess.run([ROOT / "scripts/build", "release", "count_communication"], check=True, stdout=sys.stderr)
@@ -35,9 +35,8 @@ def library():
 
 
 class Counts:
-    """Of one rank; {(stage, verb, kind, partner): (calls, bytes, largest)}, any number of steps.
-
-    `begun`: {(stage, verb): exchanges that it began}. `seconds`: inside of collectives in stage Step."""
+    """Counts of one rank: rows is {(stage, verb, kind, partner): (calls, bytes, largest)} for any number of steps, begun is {(stage,
+    verb): number of exchanges that the rank began}, seconds is the time in collectives of stage Step."""
 
     def __init__(self, rows, seconds=0.0, begun=None):
         self.rows, self.seconds, self.begun = rows, seconds, begun or {}
@@ -52,7 +51,7 @@ class Counts:
                    {(row["stage"], row["verb"]): int(row["calls"]) for row in rows if row["kind"] == EXCHANGE})
 
     def per_step(self, before, steps):
-        """Means over the steps that this run has and the run `before` does not."""
+        """Returns the means over the `steps` steps by which this run is longer than the run `before`."""
         rows = {}
         for key, (calls, size, largest) in self.rows.items():
             earlier = before.rows.get(key, (0, 0, 0))
@@ -82,7 +81,8 @@ class Counts:
 
     @property
     def exchanges(self):
-        """With neighbours: what is begun until a rank waits for a message is one. Collectives come on top."""
+        """Number of exchanges with neighbours: everything that is begun before a rank waits for a message counts as one. Collectives
+        are not included."""
         return sum(self.begun.values())
 
     @property
@@ -90,7 +90,7 @@ class Counts:
         return len({key[3] for key in self._sends()})
 
     def by_verb(self):
-        """{(stage, verb, kind, ranks, or 0 for sends): (calls, bytes, largest)}."""
+        """Returns {(stage, verb, kind, ranks, or 0 for sends): (calls, bytes, largest)}."""
         table = collections.defaultdict(lambda: (0, 0, 0))
         for (stage, verb, kind, partner), (calls, size, largest) in self.rows.items():
             key = stage, verb, kind, 0 if kind == "send" else int(partner)
@@ -99,13 +99,13 @@ class Counts:
         return dict(sorted(table.items()))
 
     def collectives(self):
-        """{(stage, verb, kind, ranks of the communicator): (calls, bytes, largest)}."""
+        """Returns {(stage, verb, kind, ranks of the communicator): (calls, bytes, largest)}."""
         return {key: value for key, value in self.by_verb().items() if key[2] != "send"}
 
 
 class Counting:
     def __init__(self, case, ranks):
-        """`case`: what stands on the command line, files and options. Exits in the program's words if it is refused."""
+        """`case`: the command line, that is, files and options. Exits with the program's message if the program refuses it."""
         self.case, self.ranks = [str(word) for word in case], ranks
         check = subprocess.run([program(), *self.case, "-check_only", "-ranks", str(ranks)], capture_output=True,
                                text=True, env=ENVIRONMENT)
@@ -118,12 +118,12 @@ class Counting:
 
     @property
     def inner(self):
-        """The rank in the middle."""
+        """The rank in the middle of the decomposition."""
         x, y, z = self.split
         return x // 2 + x * (y // 2 + y * (z // 2))
 
     def run(self, steps):
-        """[Counts of every rank] of the whole run, of so many steps."""
+        """Returns [Counts of every rank] of a whole run with this number of steps."""
         with tempfile.TemporaryDirectory() as folder:
             room = pathlib.Path(folder)
             (room / "counts").mkdir()
@@ -139,6 +139,6 @@ class Counting:
             return [Counts.read(room / f"counts/{rank}.csv") for rank in range(self.ranks)]
 
     def per_step(self, first, last):
-        """[Counts of every rank] per step: those of `last` steps without those of `first`."""
+        """Returns [Counts of every rank] per step: those of `last` steps less those of `first` steps."""
         before, after = self.run(first), self.run(last)
         return [a.per_step(b, last - first) for a, b in zip(after, before)]

@@ -7,7 +7,8 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[1]
 
 
 def load(script):
-    """load("render"), load("studies/paper/paper_figure5"): the module; what it is called with is not looked at."""
+    """Returns a script as a module: load("render"), load("studies/paper/paper_figure5"). Arguments of the calling script are
+    ignored."""
     loader = importlib.machinery.SourceFileLoader(pathlib.Path(script).name, str(SCRIPTS / script))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
     loader.exec_module(module)

@@ -27,14 +27,14 @@ TEXT_OR_COMMENT = re.compile(r''''(?:\\.|[^'\\\n])'|R"\((?:.|\n)*?\)"|"(?:\\.|[^
 
 
 def code_of(text):
-    """C++ code without its comments and with single blanks; literal texts are kept."""
+    """Returns C++ code without comments and with single blanks; string literals are kept."""
     code = TEXT_OR_COMMENT.sub(lambda found: " " if found[0].startswith("/") else found[0], text)
     return " ".join(code.split())
 
 
 def sources(folder=None):
-    """A short hash of the code in all files below `folder`, src/ if it is None: which program made a number, whatever docs,
-    scripts and comments were."""
+    """Returns a short hash of the code in all files below `folder` (default src/). It identifies the program that made a number,
+    whatever docs, scripts and comments say."""
     folder = pathlib.Path(folder or ROOT / "src")
     digest = hashlib.sha256()
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
@@ -43,7 +43,7 @@ def sources(folder=None):
 
 
 def version(program=None):
-    """The program's own version, as 1.0.0; ? if it cannot be run."""
+    """Returns the program's own version, such as 1.0.0; ? if it cannot be run."""
     says = subprocess.run([program or os.environ.get("EULASTIC", ROOT / "build/release/eulastic"), "-version"], capture_output=True,
                           text=True).stdout
     found = re.search(r"eulastic ([\d.]+)", says)
@@ -51,14 +51,14 @@ def version(program=None):
 
 
 def made_with(program=None):
-    """The sentence: with which program, when, where and by which script."""
+    """Returns the sentence that names the program, the date, the machine and the script."""
     script = pathlib.Path(sys.argv[0]).resolve()
     return (f"Made with eulastic {version(program)} (sources {sources()}), {datetime.date.today()}, on {machine()}, by "
             f"`{script.relative_to(ROOT)}`.")
 
 
 def stamp(path, program=None):
-    """Puts the line below the title of the page `path`, in place of the one that is there."""
+    """Writes this line below the title of the page `path`, in place of the present one."""
     line = f"> {made_with(program)}\n"
     title, _, rest = LINE.sub("", path.read_text()).partition("\n")
     path.write_text(f"{title}\n\n{line}\n{rest.lstrip()}")

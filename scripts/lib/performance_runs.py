@@ -32,13 +32,14 @@ def build(preset, *targets):
 
 
 def on_ranks(ranks, command):
-    """`command` on that many cores."""
+    """Returns the command line that starts `command` on this number of ranks."""
     launcher = shlex.split(os.environ.get("EULASTIC_MPIEXEC", shutil.which("mpiexec") or "mpiexec"))
     return [str(word) for word in ([*launcher, "-n", ranks] if ranks > 1 else []) + list(command)]
 
 
 def run_benchmarks(program, pattern, ranks=1, repetitions=5, more=(), threads=1):
-    """{benchmark: {counter: median of the repetitions}}; peak (Gflop/s) and triad (GB/s) of all cores are counters."""
+    """Runs benchmarks. Returns {benchmark: {counter: median of the repetitions}}; peak (Gflop/s) and triad (GB/s) of all cores are
+    counters."""
     with tempfile.NamedTemporaryFile(suffix=".json") as file:
         command = [program, f"--threads={threads}", f"--benchmark_filter={pattern}", f"--benchmark_repetitions={repetitions}",
                    f"--benchmark_out={file.name}", "--benchmark_out_format=json", "--benchmark_color=false", *more]
@@ -62,15 +63,15 @@ def median_of(runs, counter):
 
 
 def markdown_table(rows, columns):
-    """`columns`: {key of the rows: title}."""
+    """Returns a Markdown table. `columns`: {key of the rows: title}."""
     lines = ["| " + " | ".join(columns.values()) + " |", "|" + "---|" * len(columns)]
     lines += ["| " + " | ".join(str(row[name]) for name in columns) + " |" for row in rows]
     return "\n".join(lines)
 
 
 def write_tables(tables, path=None, made=None):
-    """Puts every text between <!-- table NAME --> and <!-- end --> in docs/performance.md, or in the page `path`; below it the
-    sentence `made` of measured.made_with(), from before anything was written."""
+    """Writes every text between <!-- table NAME --> and <!-- end --> in docs/performance.md, or in the page `path`, and below it the
+    sentence `made` of measured.made_with(), which the caller creates before anything is written."""
     path = path or PAGE
     page = path.read_text()
     for name, text in tables.items():

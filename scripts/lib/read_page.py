@@ -5,7 +5,7 @@ PROGRAMS = ("scripts/", "build/release/eulastic", "mpiexec", "eulastic ", "eulas
 
 
 def blocks(page):
-    """Indented or fenced blocks of a page, each with the words that end the line before it."""
+    """Yields indented or fenced blocks of a page, each with the words that end the line before it."""
     block, before, fenced = [], "", False
     lines = page.read_text().splitlines() + ["end"]
     for n, line in enumerate(lines):
@@ -23,7 +23,7 @@ def blocks(page):
 
 
 def file_name(before):
-    """Name of the file that a block is: "... NAME.opts:" or "... NAME.csv:" stands before it; else None."""
+    """Returns the name of the file that a block contains, if "... NAME.opts:" or "... NAME.csv:" precedes it; otherwise None."""
     found = re.search(r"\b(\w+\.(opts|csv)):$", before)
     return found[1] if found else None
 
@@ -33,7 +33,7 @@ def is_python(block):
 
 
 def commands(block):
-    """The block's commands without comments, continued lines joined; none if it is no shell."""
+    """Returns the commands of a block without comments, with continued lines joined; nothing if it is not shell."""
     if is_python(block):
         return []
     text = re.sub(r"\\\n\s*", "", "\n".join(block))

@@ -1,5 +1,5 @@
-"""Fingerprint of what a program computes: two programs with the same one give the same bits, as far as short runs of all cases of
-options/ show it."""
+"""Computes a fingerprint of what a program computes: two programs with the same one give the same bits in short runs of all cases of
+options/."""
 import concurrent.futures
 import hashlib
 import json
@@ -21,7 +21,8 @@ OPTIONS = ["-time_steps_max", str(STEPS), "-series_interval", "0", "-snapshot_in
 
 
 def coarse_grid(case):
-    """Options that divide the cells of a case in every direction by the same power of two, until they are CELLS_MAX at most."""
+    """Returns options that divide the cells of a case in every direction by the same power of two, until there are at most
+    CELLS_MAX."""
     cells = [int(n) for n in read_options(case).get("grid_cells", "").split(",") if n]
     if not cells:
         return []
@@ -32,7 +33,7 @@ def coarse_grid(case):
 
 
 def digest_of(folder):
-    """Digest of the state at the end of a run and of its tables; empty if the run did not finish."""
+    """Returns a digest of the state at the end of a run and of its tables; empty if the run did not finish."""
     summary = folder / "summary.json"
     if not summary.exists():
         return ""
@@ -46,8 +47,8 @@ def digest_of(folder):
 
 
 def short_run(program, case, method):
-    """Digest of a run on a coarse grid, or on the grid of the case if that is refused (inlet profiles); empty if both are, as
-    membranes with classic."""
+    """Returns the digest of a run on a coarse grid, or on the grid of the case if that is refused (inlet profiles); empty if both are
+    refused, as membranes are with classic."""
     for grid in coarse_grid(case), []:
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([program, case, "-method", method, *grid, *OPTIONS, "-output_dir", folder, "-output_overwrite"],

@@ -1,4 +1,4 @@
-"""What paper_figure5 and paper_figure6 of scripts/studies/paper share: runs, their table, models, the picture.
+"""Runs, tables, models and pictures that paper_figure5 and paper_figure6 of scripts/studies/paper share.
 
     main(Figure("paper_figure5", ...), __doc__)
 """
@@ -45,7 +45,7 @@ class Figure:
 
 
 def along(ranks, box=None):
-    """Weak: as cubic as `ranks` and whole blocks of 256 cells along x allow."""
+    """Returns the split of the ranks for weak scaling: as cubic as their number and whole blocks of 256 cells along x allow."""
     whole = box is None or box[0] % 256 == 0
     splits = [(x, y, ranks // x // y) for x in range(1, ranks + 1) if ranks % x == 0 and (whole or x == 1)
               for y in range(1, ranks // x + 1) if ranks // x % y == 0]
@@ -53,7 +53,7 @@ def along(ranks, box=None):
 
 
 def case_options(cells, split, method, steps, more):
-    """Resolved as in CASE, bodies as dense."""
+    """Returns the options of a run with the resolution and the density of bodies of CASE."""
     lengths = [n * SPACING for n in cells]
     counts = [max(1, round(length / pitch)) for length, pitch in zip(lengths, PITCH)]
     words = {"grid_cells": cells, "grid_length": [f"{length:.9g}" for length in lengths], "rbc_count": counts,
@@ -73,13 +73,13 @@ def launch(ranks, command):
 
 
 def events(log):
-    """{event: seconds of the slowest rank} of the stage Step in what -log_view prints."""
+    """Returns {event: seconds of the slowest rank} of the stage Step in the output of -log_view."""
     stage = re.search(r"--- Event Stage \d+: Step\n(.*?)(\n---|\Z)", log, re.S)
     return {row[0]: float(row[3]) for row in map(str.split, stage[1].splitlines()) if len(row) > 4} if stage else {}
 
 
 def measure(figure, method, ranks, steps, more):
-    """One row of COLUMNS: means over `steps` steps; shares of the step of the slowest rank."""
+    """Runs the program. Returns one row of COLUMNS: means over `steps` steps; shares of the step of the slowest rank."""
     split = along(ranks, figure.box) if figure.box else None
     cells = figure.cells_on(split)
     with tempfile.TemporaryDirectory(dir=os.environ.get("SLURM_SUBMIT_DIR")) as folder:
@@ -103,7 +103,7 @@ def measure(figure, method, ranks, steps, more):
 
 
 def modelled(figure, machine, method):
-    """[(Split, {part: seconds})]."""
+    """Returns [(Split, {part: seconds})]."""
     step = Step.read(method)
     rows = []
     for ranks in figure.modelled:
@@ -113,7 +113,7 @@ def modelled(figure, machine, method):
 
 
 def describe(machine, method, rows):
-    """Lines of text."""
+    """Yields lines of text."""
     yield f"MODEL, not measured: {machine.name}, {method}; a rank is {machine.rank}; milliseconds of a step"
     names = ["compute", "latency", "exchange", "pack", "reductions", "gather"]
     yield f"{'ranks':>8} {'split':>12} {'largest box':>14} " + " ".join(f"{name:>10}" for name in [*names, "step"])
@@ -123,7 +123,8 @@ def describe(machine, method, rows):
 
 
 def draw(figure, measured, models, path):
-    """Measured: full lines and marks in colours. Modelled: grey, dashed, without marks, and said so."""
+    """Draws measured times as full coloured lines with marks, and modelled ones as dashed grey lines without marks, labelled as
+    such."""
     picture, (axes,) = panels(1, height=4.6)
     for method, (colour, mark) in MEASURED.items():
         times = {row["ranks"]: row["seconds_per_step"] for row in measured if row["method"] == method}
@@ -161,7 +162,7 @@ def numbers(text):
 
 
 def main(figure, usage, check=None):
-    """`check(machine)`: lines on how far the model is from the paper."""
+    """Runs a script for `figure`. `check(machine)` returns lines on the deviation of the model from the paper."""
     parser = argparse.ArgumentParser(description=usage, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      allow_abbrev=False)
     cores = int(os.environ.get("SLURM_NTASKS", len(os.sched_getaffinity(0))))

@@ -1,14 +1,14 @@
-"""The time of a step on many ranks, from counted messages and the program's own split; nothing here is measured.
+"""Models the time of a step on many ranks from counted messages and the program's own split; nothing here is measured.
 
     machine, step = Machine.read("k"), Step.read("classic")
     parts = model(machine, step, Split.planned((256, 192, 160), (96, 27, 32)))
     parts["compute"], parts["latency"], parts["exchange"], parts["pack"], parts["reductions"], parts["gather"]  # s
 
-LogGP's terms (Alexandrov et al. 1995): latency and overhead of a message, bandwidth of a rank; and what memory takes to
-pack and unpack. tools/step_counts.csv, by scripts/studies/scaling/scaling_tables --count, is of the inner one of 27 ranks with boxes of
-32^3 cells: bytes to neighbours across faces, edges and corners give the sums of w, w^2 and w^3 over the fields of a
-step, w layers each, and with them the bytes of a box of any size. What the boxes of bodies send (`boxes` there) goes to
-whichever rank owns a part of them and has sums of its own.
+The terms are those of LogGP (Alexandrov et al. 1995), latency and overhead of a message and bandwidth of a rank, and the time that
+memory takes to pack and unpack. tools/step_counts.csv, written by scripts/studies/scaling/scaling_tables --count, holds the counts of the
+inner one of 27 ranks with boxes of 32^3 cells. The bytes to neighbours across faces, edges and corners give the sums of w, w^2 and w^3 over
+the fields of a step, with w the width of their layers, and these sums give the bytes of a box of any size. Data of the boxes of bodies
+(`boxes` there) go to all ranks that own a part of them and have sums of their own.
 """
 import collections
 import csv
@@ -62,7 +62,7 @@ class Machine:
 
     @classmethod
     def read(cls, name):
-        """Of tools/machines/NAME.json, or of a file. Exits with one line if it is none."""
+        """Reads tools/machines/NAME.json, or a file like it. Exits with one line if there is none."""
         path = next((p for p in (ROOT / f"tools/machines/{name}.json", pathlib.Path(name)) if p.is_file()), None)
         known = ", ".join(sorted(p.stem for p in (ROOT / "tools/machines").glob("*.json")))
         if not path:
@@ -83,13 +83,13 @@ class Machine:
 
 @dataclasses.dataclass
 class Moments:
-    """Of a group of exchanges: messages to each neighbour in a step, and the sums of w, w^2, w^3 over their fields."""
+    """A group of exchanges: number of messages to each neighbour in a step, and the sums of w, w^2, w^3 over their fields."""
     messages: float = 0
     w: tuple = (0, 0, 0)
 
     @classmethod
     def of(cls, rows):
-        """`rows`: {rank: (calls, bytes)} of the inner one of 3 x 3 x 3."""
+        """`rows`: {rank: (calls, bytes)} of the inner one of 3 x 3 x 3 ranks."""
         found = collections.defaultdict(list)
         for rank, (calls, size) in rows.items():
             across = sum(d != 1 for d in (rank % 3, rank // 3 % 3, rank // 9))
@@ -100,13 +100,13 @@ class Moments:
 
 @dataclasses.dataclass
 class Bodies:
-    """In boxes of their own, which the exchange of velocities and forces fills and empties."""
+    """Bodies in boxes of their own, to and from which velocities and forces are exchanged."""
     exchanges: float = 0     # in a step, of three components each
     per_cell: float = 0      # bodies for each cell of the grid
     width: tuple = (0, 0, 0)  # of the box of a body, in cells
 
     def elsewhere(self, split):
-        """The part of a box that lies in the cells of ranks other than the one that has its centre, in the mean."""
+        """Returns the mean share of a box that lies in cells of other ranks than the one that has its centre."""
         here = 1.0
         for width, n, parts in zip(self.width, split.box, split.ranks):
             if parts > 1:
@@ -114,7 +114,7 @@ class Bodies:
         return 1 - here
 
     def bytes(self, split):
-        """That a rank sends of them in a step."""
+        """Returns the bytes that a rank sends for them in a step."""
         return 8 * 3 * self.exchanges * self.per_cell * math.prod(split.box) * math.prod(self.width) * self.elsewhere(split)
 
 
@@ -163,7 +163,8 @@ class Split:
 
     @classmethod
     def planned(cls, box, along, by_hand=True):
-        """As the program splits along * box cells; into `along` ranks, or as it likes on as many."""
+        """Returns the program's split of along * box cells: into `along` ranks, or, unless `by_hand`, its own choice for the same
+        number of ranks."""
         return cls.of([n * p for n, p in zip(box, along)], math.prod(along), along if by_hand else None)
 
     @classmethod
@@ -188,7 +189,7 @@ class Split:
         return math.prod(self.box) * self.count / math.prod(self.cells)
 
     def bytes(self, w):
-        """That a rank sends of fields whose layers have these sums of w, w^2, w^3."""
+        """Returns the bytes that a rank sends for fields whose layers have these sums of w, w^2, w^3."""
         cut = [p > 1 for p in self.ranks]
         sides = [[n, 0] if not c else [n, 2] for n, c in zip(self.box, cut)]  # along the box, or one of two ends
         total = 0.0
@@ -199,7 +200,7 @@ class Split:
 
 
 def check(cells, words):
-    """What -check_only says of CASE with so many cells, as large as they are wide."""
+    """Returns the output of -check_only for CASE with this number of cells, at the spacing of CASE as counted."""
     line = [str(program()), str(CASE), "-grid_cells", ",".join(map(str, cells)), "-grid_length",
             ",".join(f"{n * SPACING:.9g}" for n in cells), "-rbc_count", "1,1,1", "-check_only", *words]
     done = subprocess.run(line, capture_output=True, text=True, env=ENVIRONMENT)
@@ -209,28 +210,28 @@ def check(cells, words):
 
 
 def estimate(method):
-    """Microseconds for a cell and step on a core."""
+    """Returns the estimated microseconds per cell and step on a core."""
     return float(re.search(r"([\d.e+-]+) us per cell, step and core", check((96, 96, 96), SETTINGS[method]))[1])
 
 
 def shared_levels(cells):
-    """Of the V-cycle, above the one that every rank has."""
+    """Returns the number of levels of the V-cycle above the one that every rank holds."""
     return max(0, math.ceil(math.log(math.prod(cells) / LEVEL_GATHERED, 8) - 1e-9))
 
 
 def more_messages(step, split):
-    """To a neighbour, of levels of the V-cycle beyond those counted."""
+    """Returns the messages to a neighbour of the levels of the V-cycle beyond those counted."""
     return LEVEL_MESSAGES * step.sweeps * (shared_levels(split.cells) - shared_levels([COUNTED_BOX * COUNTED_SPLIT] * 3))
 
 
 def exchanges(machine, split, messages, size):
-    """{part: seconds} of so many messages to each neighbour, of `size` bytes in all."""
+    """Returns {part: seconds} of this number of messages to each neighbour, with `size` bytes in all."""
     return {"latency": messages * (machine.latency + 2 * machine.overhead * split.neighbours),
             "exchange": size / machine.bandwidth, "pack": 4 * size / machine.memory_bandwidth}
 
 
 def model(machine, step, split):
-    """{part of a step: seconds}; their sum is the step."""
+    """Returns {part of a step: seconds}; their sum is the time of the step."""
     parts = {"compute": math.prod(split.box) * machine.classic_seconds_per_cell * step.relative}
     if split.count == 1:
         return parts

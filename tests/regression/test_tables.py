@@ -43,8 +43,8 @@ class Tables(WithRoom):
         name = self.write("beat.csv", table(BEAT))
         for option in ("-boundary_xmin_velocity", "-boundary_xmin_flow_rate"):
             self.refused(*CHANNEL, "-time_end", ".3", option, name,
-                         says=[f"{option}: beat.csv goes from time 0 to 0.15, the run from 0 to 0.3; accepted: a table of "
-                               "all the run, -boundary_xmin_table_period to repeat it (in the file: # period T), or -boundary_xmin_table_hold true"])
+                         says=[f"{option}: beat.csv goes from time 0 to 0.15, the run from 0 to 0.3; accepted: a table that "
+                               "covers the run, -boundary_xmin_table_period to repeat it (in the file: # period T), or -boundary_xmin_table_hold true"])
         self.refused(*CHANNEL, "-time_end", ".3", "-boundary_xmin_velocity", "1", "-boundary_xmax_pressure", name, "-check_only",
                      says=["-boundary_xmax_pressure: beat.csv goes from time 0 to 0.15"])
         time, flow = self.inflow("-boundary_xmin_flow_rate", name, "-boundary_xmin_table_hold", end=.3)

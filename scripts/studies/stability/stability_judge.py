@@ -19,7 +19,7 @@ REPORTED = {"fast": ("overlap", "energy made"), "classic": ("volume", "phi", "de
 
 
 def fields_of_b(snapshot, name):
-    """phi, tr B and det B at the centres; off-diagonals are averaged from their edges (high walls: from inside)."""
+    """Returns phi, tr B and det B at the centres; off-diagonals are averaged from their edges, those on high walls from inside."""
     ending = "_" + name if f"solid_fraction_{name}" in snapshot else ""
     b = {c: snapshot[f"left_cauchy_green_{c}{ending}"].astype(float) for c in ("xx", "yy", "zz", "yz", "xz", "xy")
          if f"left_cauchy_green_{c}{ending}" in snapshot}
@@ -40,7 +40,7 @@ def fields_of_b(snapshot, name):
 
 
 def stretch_of(trace, flat):
-    """As the solver: uniaxial in 3-D, plane in 2-D."""
+    """Returns the largest stretch as the solver estimates it: uniaxial in 3-D, plane in 2-D."""
     if flat:
         t = max(trace - 1, 2)
         return math.sqrt((t + math.sqrt(t * t - 4)) / 2)
@@ -52,8 +52,8 @@ def vectors(options, ending):
 
 
 def energy_made(series):
-    """At every row: what kinetic + elastic energy has gained since any earlier one beyond the work of force and walls. In
-    exact flow nothing: dissipation takes, and what a solid gives back to the fluid was given to it before."""
+    """Returns, for every row, the gain of kinetic and elastic energy since any earlier row beyond the work of force and walls. It is 0
+    in an exact flow: dissipation only removes energy, and a solid returns only what it received."""
     power = series.force_power + series.wall_power
     work = numpy.concatenate([[0], numpy.cumsum((power[1:] + power[:-1]) / 2 * numpy.diff(series.time))])
     unpaid = series.kinetic_energy + series.elastic_energy - work
@@ -61,13 +61,14 @@ def energy_made(series):
 
 
 def surface_energy_made(run):
-    """What membranes have made of nothing, over what came in."""
+    """Returns the energy that membranes have generated, relative to the energy supplied."""
     return float(-run.series.energy_lost_elastic.min() / run.summary["energy_supplied"])
 
 
 def energy_growth(run):
-    """Largest energy over what the start and the force allow. Of walls: no more motion than all at twice their speed,
-    unless it is paid for: a solid that a wall stretches may hold many times that, and give it back at once."""
+    """Returns the largest energy relative to the bound that the start and the force allow. With moving walls the bound is the motion
+    of the whole box at twice their speed, unless the energy was supplied: a solid that a wall stretches may hold many times that, and
+    release it at once."""
     series, options = run.series, run.options
     volume = float(numpy.prod(run.length if run.cells[2] > 1 else run.length[:2]))
     modulus = max([float(v) for k, v in options.items() if k.endswith("_shear_modulus")] or [0.0])
@@ -84,7 +85,7 @@ def energy_growth(run):
 
 
 def judge(directory, method):
-    """(reason of death or "", what is only reported, measures)"""
+    """Returns (reason of failure or "", what is only reported, measures)."""
     run = Run(directory)
     summary, series = run.summary, run.series
     m = {"steps": summary["steps"], "dt": summary["dt_mean"],

@@ -1,4 +1,4 @@
-"""Maps and table of scripts/studies/stability/stability_map."""
+"""Draws the maps and writes the table of scripts/studies/stability/stability_map."""
 from eulastic.figure_style import INK, SMALL, VERMILLION, WIDTH, plt, save
 from matplotlib.patches import Patch
 
@@ -70,8 +70,8 @@ def table_row(group, method, scenes):
 
 
 def write_table(scenes, path):
-    """Between the two marks in the file: a row per group and method, of the scenes at the automatic time step. Rows of
-    groups that are not among `scenes` are kept."""
+    """Writes the table between the two marks in the file: a row per group and method, of the scenes at the automatic time step. Rows
+    of groups that are not among `scenes` are kept."""
     before, rest = path.read_text().split("<!-- table -->\n")
     old, after = rest.split("<!-- end of table -->\n")
     groups = {s.group.name: s.group for s in scenes}

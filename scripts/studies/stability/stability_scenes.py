@@ -1,4 +1,5 @@
-"""The scenes of scripts/studies/stability/stability_map: short and difficult. Density, size of the box and speed are 1 unless a scene sets them.
+"""The scenes of scripts/studies/stability/stability_map, which are short and difficult. Density, size of the box and speed are 1 unless a scene
+sets them.
 
 A group is a map: its `build(x, y)` gives the options of the scene at (x, y); each is run with the methods of its group.
 """
@@ -171,7 +172,7 @@ def stepped(factor, kind):
 
 
 def solid(kind, G):
-    """3-D."""
+    """A solid in 3-D."""
     flow = box(20, "xyz", depth=20, end=1, steps=300, boundary_ymax_velocity=UP)
     free = box(20, "", depth=20, end=1, steps=300, initial_velocity="random")
     return {
@@ -190,7 +191,7 @@ SOLIDS = ["cavity", "random", "lattice, touching", "stretched 3", "plate", "box 
 
 
 def long(kind, G):
-    """A hundred thousand steps."""
+    """A run of a hundred thousand steps."""
     short = {"end": 1e9, "steps": 100000}
     scene = {"rest": lambda: box(16, "", **short) | body(G, radius=.25),
              "shear": lambda: shear(G, 100, 16, **short),

@@ -1,4 +1,4 @@
-"""S6 ... S10, R1: free bodies."""
+"""S6 to S10, R1: free bodies."""
 import math
 import threading
 
@@ -27,8 +27,8 @@ def fast_at(*ladders):
 
 # S6
 def disc_in_shear(capillary, quick=False):
-    """Walls 16 R apart raise the shear rate by 1/(1 - 7.7445 (R/H)^2). Period 32 R: images at 16 R lower D. Density .1:
-    with 1 (rho gd R^2/mu = .05) inertia raises D and turns the disc."""
+    """Returns the case. Walls 16 R apart raise the shear rate by 1/(1 - 7.7445 (R/H)^2). The period is 32 R, since images at 16 R
+    lower D. The density is .1: with 1 (rho gd R^2/mu = .05) inertia raises D and rotates the disc."""
     deformation, angle = exact.disc_in_shear(capillary / (1 - 7.7445 / 256))
     end = 18 * capillary / RATE
 
@@ -76,7 +76,8 @@ def relaxation(title, prefix, full, quick):
 
 # S8
 def limit(name, slope=False):
-    """Unbounded and h -> 0: least squares of D_0 + a (R/L)^3 + b (h/R)^2, or without b at one resolution. `slope`: b/D_0."""
+    """Extrapolates to an unbounded fluid and h -> 0: least squares of D_0 + a (R/L)^3 + b (h/R)^2, without b at a single resolution.
+    `slope`: returns b/D_0."""
     def value(runs):
         terms = [[1, box**-3.] + [n**-2.] * (len({n for n, _ in runs}) > 1) for n, box in runs]
         found = [last(name)(run) for run in runs.values()]
@@ -88,7 +89,8 @@ def limit(name, slope=False):
 
 
 def sphere(capillary, deformation, angle, time, keys, quick=()):
-    """Keys (cells per radius, box in radii); until shear strain `time`, when D is within .3 % of its final value."""
+    """Returns the case. Keys are (cells per radius, box in radii); runs end at the shear strain `time`, when D is within .3 % of its
+    final value."""
     def options(key, _):
         n, box = key
         return {"grid_cells": ",".join([str(n * box)] * 3), "grid_length": ",".join([str(box)] * 3),
@@ -117,7 +119,7 @@ def sphere(capillary, deformation, angle, time, keys, quick=()):
 
 # S9
 def ringing(run):
-    """Taylor deformation with the sign of the side the long axis lies on, over its start."""
+    """Returns the times and the Taylor deformation relative to its start, with a sign for the direction of the long axis."""
     d = run.bodies.taylor_deformation[:, 0] * numpy.where(numpy.abs(run.bodies.inclination[:, 0]) < 45, 1, -1)
     return run.bodies.time, d / d[0]
 
@@ -126,11 +128,11 @@ RING = {0.01: reference("ringing_disc"), 0.001: reference("ringing_disc_thin")}
 
 
 def ring(viscosity, limits, kept, settings, quick):
-    """limits: asked for at 80, 160, 320 cells; kept: instead."""
+    """Returns the case. limits: tolerances at 80, 160, 320 cells; kept: second bounds, for rows that miss them."""
     want = RING[viscosity]
 
     def error(run):
-        """rms over the reference's times, of the start."""
+        """Returns the rms error over the times of the reference, relative to the start."""
         return rms(numpy.interp(want[:, 0], *ringing(run)) - want[:, 1])
     asked, instead = [dict(zip((80, 160, 320), each)) for each in (limits, kept)]
     options = {"fluid_density": 1, "fluid_viscosity": viscosity, "disc_semi_axes": f"{.2 * 1.02},{.2 / 1.02},1",
@@ -150,7 +152,7 @@ PATH = reference("soft_disc_cavity")
 
 
 def path_distance(begin, end):
-    """Largest distance of the centroid from the reference path."""
+    """Returns the largest distance of the centroid from the reference path."""
     def distance(run):
         t = PATH[(PATH[:, 0] >= begin) & (PATH[:, 0] <= end), 0]
         xy = [numpy.interp(t, run.bodies.time, run.bodies.centroid[:, 0, d]) for d in (0, 1)]
@@ -174,7 +176,7 @@ def path_line(run):
 
 # R1
 def thickness(run):
-    """Thickness of the cell along its axis, y, on the lines of cells along z through the middle: (r, h)."""
+    """Returns the thickness of the cell along its axis, y, on the lines of grid cells along z through the middle: (r, h)."""
     s = run.snapshots[0]
     h = s["solid_fraction"].astype(float).sum(axis=1) * run.spacing[1]
     k = run.cells[2] // 2
@@ -188,7 +190,7 @@ def middle_thickness(run):
 
 
 def area(run):
-    """Surface of the level 1/2 by marching cubes."""
+    """Returns the area of the isosurface phi = 1/2, by marching cubes."""
     with IMPORTING:
         import vtk
         from vtk.util.numpy_support import numpy_to_vtk

@@ -23,8 +23,9 @@ WIDTH = .9  # of the smooth part, in spacings: what is below the spacing is 1e-3
 
 
 def tables():
-    """s1/r and s2/r^3 over r, in widths, of the smooth part s1 I/r + s2 dd/r^3 of G: its Fourier transform is that of G times
-    (1 + k^2/4) exp(-k^2/4), so that any forces give energy to the flow. The integral of the rest over a plane is 2 sqrt(pi) (I - nn)."""
+    """Returns s1/r and s2/r^3 over r, in widths, of the smooth part s1 I/r + s2 dd/r^3 of G. Its Fourier transform is that of G times
+    (1 + k^2/4) exp(-k^2/4), so that any forces supply energy to the flow. The integral of the rest over a plane is 2 sqrt(pi) (I -
+    nn)."""
     r = numpy.linspace(0, REACH, 4000)[1:]
     error, bell = numpy.vectorize(math.erf)(r), 2 / math.sqrt(pi) * r * numpy.exp(-r * r)
     at_0 = 4 / math.sqrt(pi), 4 / 3 / math.sqrt(pi)
@@ -35,8 +36,8 @@ TABLES = tables()
 
 
 def sphere(halvings):
-    """Nodes and triangles (outwards) of an icosahedron whose edges are halved so many times: 12, 42, 162, 642, 2562 nodes, on a
-    sphere such that the polyhedron has the volume of the one of radius 1: its area and normals then are nearly right, too."""
+    """Returns nodes and outward triangles of an icosahedron whose edges are halved `halvings` times: 12, 42, 162, 642, 2562 nodes, on
+    a sphere such that the polyhedron has the volume of a sphere of radius 1; its area and normals are then nearly correct, too."""
     golden = (1 + math.sqrt(5)) / 2
     rectangle = numpy.array([(0, a, b * golden) for a in (-1, 1) for b in (-1, 1)])
     x = numpy.concatenate([numpy.roll(rectangle, turn, axis=1) for turn in range(3)]) / math.hypot(1, golden)
@@ -59,19 +60,19 @@ def sphere(halvings):
 
 
 def area_vectors(x, triangles):
-    """Area of every triangle times its normal."""
+    """Returns the area of every triangle times its normal."""
     a, b, c = (x[triangles[:, corner]] for corner in range(3))
     return numpy.cross(b - a, c - a) / 2
 
 
 def to_nodes(parts, triangles, nodes):
-    """Sum on nodes of what corners of triangles have: (triangles, 3, 3)."""
+    """Returns the sums over nodes of values at the corners of triangles, (triangles, 3, 3)."""
     return numpy.stack([numpy.bincount(triangles.ravel(), parts[..., d].ravel(), nodes) for d in range(3)], axis=1)
 
 
 class Membrane:
-    """Of docs/method.md, (26), from its energy per area at rest, with the Cauchy-Green tensor C of every triangle: `stress` is
-    2 dW/dC, the second of Piola and Kirchhoff."""
+    """The membrane of docs/method.md, (26), from its energy per undeformed area, with the Cauchy-Green tensor C of every triangle:
+    `stress` is the second Piola-Kirchhoff stress 2 dW/dC."""
 
     def __init__(self, x, triangles, law, modulus, area_modulus=1):
         self.triangles, self.law, self.modulus, self.area_modulus = triangles, law, modulus, area_modulus
@@ -91,7 +92,7 @@ class Membrane:
         return self.modulus * ((trace - 1) * one + (self.area_modulus * (square - 1) - 1) * square * inverse)
 
     def forces(self, x):
-        """On the fluid, at nodes: minus the change of energy with their place."""
+        """Returns the forces on the fluid at the nodes: minus the derivative of the energy with respect to their positions."""
         a, b, c = (x[self.triangles[:, corner]] for corner in range(3))
         gradient = numpy.stack([b - a, c - a], axis=2) @ self.inverse
         of_edges = gradient @ self.stress(gradient.transpose(0, 2, 1) @ gradient) @ self.inverse.transpose(0, 2, 1)
@@ -100,7 +101,7 @@ class Membrane:
 
 
 def blocks(x, width):
-    """Rows of all pairs: (rows, d (3, rows, n), 1/r (0 at r = 0), index of near pairs, their r in widths)."""
+    """Yields rows of all pairs: (rows, d (3, rows, n), 1/r (0 at r = 0), index of near pairs, their r in widths)."""
     for first in range(0, len(x), BLOCK):
         rows = slice(first, min(first + BLOCK, len(x)))
         d = x.T[:, None, :] - x[rows].T[:, :, None]
@@ -112,8 +113,8 @@ def blocks(x, width):
 
 
 def layers(x, forces, normals, double):
-    """Velocity of the single layer and, if `double`, (3 n, 3 n) matrix of the sums over T n/(8 pi) with its diagonal such that a
-    uniform u gives 0."""
+    """Returns the velocity of the single layer and, if `double`, the (3 n, 3 n) matrix of the sums over T n/(8 pi), with a diagonal
+    such that a uniform u gives 0."""
     areas = numpy.linalg.norm(normals, axis=1)[:, None]
     width, unit = WIDTH * math.sqrt(areas.mean()), normals / areas
     single, matrix = numpy.empty_like(x), numpy.empty((3, len(x), 3, len(x))) if double else None
@@ -142,8 +143,8 @@ def layers(x, forces, normals, double):
 
 @dataclasses.dataclass
 class Capsule:
-    """A body in shear of rate 1 from t = 0, radius 1 (or these nodes) at rest, no membrane if capillary is inf. `box`: with what
-    walls at y = +-box[1]/2 and images in x and z add to the velocity gradient in the middle (ellipsoids.images)."""
+    """A body in shear of rate 1 from t = 0, with radius 1 (or these nodes) when undeformed, without a membrane if capillary is inf.
+    `box`: with the velocity gradient that walls at y = +-box[1]/2 and images in x and z add in the middle (ellipsoids.images)."""
     nodes: numpy.ndarray
     triangles: numpy.ndarray
     capillary: float
@@ -173,8 +174,8 @@ class Capsule:
         return self.u - outwards * normals / areas[:, None]
 
     def solved(self, right, matrix):
-        """u = right + (1 - ratio) D u, D the matrix with eigenvalues of 0 to 1, from the last u, as
-        u = (right + (1 - ratio)(D - 1/2) u)/((1 + ratio)/2), whose error falls by |1 - ratio|/(1 + ratio) each time."""
+        """Solves u = right + (1 - ratio) D u, where D is the matrix with eigenvalues of 0 to 1, from the last u, by the iteration u =
+        (right + (1 - ratio)(D - 1/2) u)/((1 + ratio)/2), whose error decreases by |1 - ratio|/(1 + ratio) each time."""
         if matrix is None:
             return right
         u, right = self.u.T.ravel(), right.T.ravel()
@@ -185,7 +186,7 @@ class Capsule:
         raise ArithmeticError("the velocity of the surface is not found")
 
     def of_images(self, x, forces, normals):
-        """Velocity gradient, of the stresslet int -F x + (ratio - 1)(u n + n u)."""
+        """Returns the velocity gradient of the images, from the stresslet int -F x + (ratio - 1)(u n + n u)."""
         stresslet = -x.T @ forces + 2 * (self.ratio - 1) * self.u.T @ normals
         stresslet = (stresslet + stresslet.T) / 2
         xx = (stresslet[0, 0] - stresslet[1, 1]) / 2
@@ -193,7 +194,7 @@ class Capsule:
         return numpy.array([[along, xy, 0], [yx, across, 0], [0, 0, -along - across]])
 
     def step(self, dt):
-        """Third order (Shu and Osher)."""
+        """Advances by dt with the third-order scheme of Shu and Osher."""
         x = self.x
         one = x + dt * self.velocity(x)
         two = .75 * x + .25 * (one + dt * self.velocity(one))
@@ -202,7 +203,7 @@ class Capsule:
 
 
 def moments(x, triangles):
-    """Volume, and its second moments: of the tetrahedra of the triangles with the origin."""
+    """Returns the volume and its second moments, as sums over the tetrahedra of the triangles with the origin."""
     a, b, c = (x[triangles[:, corner]] for corner in range(3))
     volumes = (numpy.cross(a, b) * c).sum(axis=1) / 6
     outer = sum(numpy.einsum("t,ti,tj->ij", volumes, p, p) for p in (a, b, c, a + b + c)) / 20
@@ -210,15 +211,15 @@ def moments(x, triangles):
 
 
 def shape(x, triangles):
-    """Taylor deformation in the plane of the shear and inclination in degrees, of the ellipsoid with the same second moments, as
-    bodies.h5 has them."""
+    """Returns the Taylor deformation in the plane of the shear and the inclination in degrees of the ellipsoid with the same second
+    moments, as in bodies.h5."""
     squares, directions = numpy.linalg.eigh(moments(x, triangles)[1][:2, :2])
     short, long = numpy.sqrt(squares)
     return (long - short) / (long + short), numpy.degrees(numpy.arctan(directions[1, 1] / directions[0, 1]))
 
 
 def startup(capsule, times, dt):
-    """(len(times), 2): shape() at these times; steps of at most dt."""
+    """Returns shape() at these times, (len(times), 2), computed with steps of at most dt."""
     t, found = 0.0, []
     for until in times:
         steps = math.ceil((until - t) / dt - 1e-9)
@@ -231,7 +232,7 @@ def startup(capsule, times, dt):
 
 @dataclasses.dataclass(frozen=True)
 class Startup:
-    """A capsule in shear from rest; what is known of it is in tests/reference/NAME.csv."""
+    """A capsule in shear from rest, whose results are in tests/reference/NAME.csv."""
     law: str
     capillary: float
     ratio: float
@@ -259,5 +260,6 @@ STARTUPS = (Startup("neo_hookean", .15, 1, 2), Startup("neo_hookean", .3, 1, 3),
 
 
 def extrapolated(coarse, fine):
-    """Where errors are of second order in the spacing, and the fine mesh has half of the coarse one's."""
+    """Returns the limit of two results with errors of second order in the spacing; the spacing of the fine mesh is half that of the
+    coarse one."""
     return fine + (fine - coarse) / 3

@@ -73,24 +73,24 @@ def square(n, length=1):
 
 
 def column(n):
-    """Four columns of n cells in height 1: for flows that depend on y only."""
+    """Options of four columns of n cells in height 1, for flows that depend on y only."""
     return {"grid_cells": f"4,{n},1", "grid_length": f"{4 / n},1,1"}
 
 
 def reference(name):
-    """tests/reference/NAME.csv as an array; lines with # say where it is from."""
+    """Reads tests/reference/NAME.csv as an array; lines with # name the source."""
     path = ROOT / "tests/reference" / f"{name}.csv"
     lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     return numpy.array([[float(x) for x in line.split(",")] for line in lines[1:]])
 
 
 def at_times(table, column_name, times):
-    """A column of series.csv or of a body, interpolated linearly to these times."""
+    """Interpolates a column of series.csv, or of a body, linearly to these times."""
     return numpy.interp(times, table.time, getattr(table, column_name))
 
 
 def profile_times(profile):
-    """A profile file as times (nt), coordinates (n), u and v (nt, n)."""
+    """Reads a profile file. Returns times (nt), coordinates (n), u and v (nt, n)."""
     if len(profile) == 0:
         raise ValueError("no profile")
     arrays = over_time(profile)

@@ -1,4 +1,5 @@
-"""V2: drops. With surface tension, Taylor (1934) for small deformation, and without, exact; docs/method.md, sections 16, 17."""
+"""V2: drops. With surface tension they are compared with Taylor (1934) for small deformation, without it with an exact solution; docs/method.md,
+sections 16, 17."""
 import functools
 
 import numpy
@@ -14,14 +15,14 @@ STILL = {"boundary_ymin_velocity": "0,0,0", "boundary_ymax_velocity": "0,0,0", "
 
 @functools.lru_cache(maxsize=None)
 def taylor(ratio, box):
-    """D/Ca of Taylor in a cube `box` radii wide: walls and images add strain by the drop's stresslet, (1 + 5/2 l)/(1 + l) times
-    2/5 of a rigid sphere's, 10/3 pi of the shear."""
+    """Returns D/Ca of Taylor in a cube `box` radii wide: walls and images add strain by the stresslet of the drop, (1 + 5/2 l)/(1 + l)
+    times 2/5 of that of a rigid sphere, 10/3 pi of the shear."""
     added = 4 / 3 * numpy.pi * (1 + 2.5 * ratio) / (1 + ratio) * ellipsoids.images((box, box, box))[:2].sum()
     return (19 * ratio + 16) / (16 * ratio + 16) / (1 - added)
 
 
 def relaxation_rate(ratio):
-    """Of the second mode, in sigma/(mu R)."""
+    """Returns the relaxation rate of the second mode, in sigma/(mu R)."""
     return 40 * (ratio + 1) / ((2 * ratio + 3) * (19 * ratio + 16))
 
 
@@ -31,7 +32,7 @@ def cube(n, box):
 
 # At rest: off the grid's symmetry; no flow should be there
 def largest_capillary(begin, end):
-    """Largest mu |u|/sigma within parts of the run's time."""
+    """Returns the largest mu |u|/sigma between two fractions of the time of the run."""
     def value(run):
         t = run.series.time / run.series.time[-1]
         return float(run.series.speed_max[(t >= begin) & (t <= end)].max()) * VISCOSITY / TENSION
@@ -75,9 +76,9 @@ def in_shear(ratio, time, keys, quick=()):
 
 # Let go
 def relaxing(ratio, keys, quick=()):
-    """Unbounded and h -> 0: least squares of the rate over (R/L)^3 and (h/R)^2. The rate is that of D(t) = A exp(-r t) + B from a
-    tenth of 1.5 times of decay on: on a grid a drop comes to rest with a B that is not 0. The reference knows no
-    inertia: rho sigma R/mu^2 = .04."""
+    """Returns the case, extrapolated to an unbounded fluid and h -> 0 by least squares of the rate over (R/L)^3 and (h/R)^2. The rate
+    is that of D(t) = A exp(-r t) + B from a tenth of 1.5 decay times on, since on a grid a drop comes to rest with a B other than 0.
+    The reference neglects inertia: rho sigma R/mu^2 = .04."""
     rate = relaxation_rate(ratio)
 
     def options(key, _):
@@ -125,7 +126,7 @@ def without_tension(ratio, strain, keys, quick=(), kept=None):
         return run.bodies.time[1:], ellipsoids.drop((1, 1, 1), 0, ratio, run.bodies.time[1:], FREE_BOX)[:, 0]
 
     def growth(run):
-        """From a fifth of the time on: what inertia does at the start is over."""
+        """Returns the growth from a fifth of the time on, when the effect of inertia at the start is over."""
         times, there = exact(run)
         first = int(numpy.searchsorted(times, strain / 5))
         here = run.bodies.taylor_deformation[1:, 0]

@@ -1,7 +1,8 @@
-"""Ellipsoids that turn, are strained and tank-tread in Stokes shear u = y, viscosity 1 outside, two of their axes in the plane
-of the shear. In a linear flow all is linear in an ellipsoid, too (Jeffery, Proc. R. Soc. A 102, 1922; Eshelby, Proc. R. Soc.
-A 241, 1957): a drop without tension, exact; one that is rigid, the limit; a membrane that goes round a shape that stays
-(Keller and Skalak, J. Fluid Mech. 120, 1982)."""
+"""Ellipsoids that rotate, are strained and tank-tread in Stokes shear u = y, viscosity 1 outside, with two of their axes in the plane
+of the shear. In a linear flow the flow inside an ellipsoid is linear, too (Jeffery, Proc. R. Soc. A 102, 1922; Eshelby, Proc. R. Soc.
+A 241, 1957): exactly for a drop without surface tension, and in the limit for a rigid ellipsoid. A membrane that tank-treads around
+a fixed shape is that of Keller and Skalak (J. Fluid Mech. 120, 1982).
+"""
 import numpy
 
 from .exact import added_by_walls, pi, runge_kutta
@@ -12,16 +13,16 @@ NODES, WEIGHTS = (NODES / (1 - NODES))**2, WEIGHTS * 2 * NODES / (1 - NODES)**3 
 
 
 def integrals(axes):
-    """3-by-3 I_ij of Eshelby over 4 pi, i != j: a1 a2 a3/2 times the integral of 1/((a_i^2 + s)(a_j^2 + s) Delta) over s > 0;
-    on the diagonal three times that."""
+    """Returns Eshelby's 3-by-3 I_ij over 4 pi, for i != j a1 a2 a3/2 times the integral of 1/((a_i^2 + s)(a_j^2 + s) Delta) over s >
+    0, on the diagonal three times that."""
     parts = numpy.square(axes)[:, None] + NODES
     found = numpy.einsum("in,jn,n->ij", 1 / parts, 1 / parts, WEIGHTS / numpy.sqrt(parts.prod(axis=0)))
     return numpy.prod(axes) / 2 * found * (1 + 2 * numpy.eye(3))
 
 
 def resistance(axes):
-    """K: a rigid ellipsoid free to turn in the strain E_12 has the stresslet 2 K E_12 per volume, 5/2 of a sphere; a fluid one,
-    `ratio` times as viscous, is strained at K E_12/(K - 1 + ratio)."""
+    """Returns K. A rigid ellipsoid that is free to turn in the strain E_12 has the stresslet 2 K E_12 per volume, 5/2 for a sphere; a
+    fluid one, `ratio` times as viscous, is strained at the rate K E_12/(K - 1 + ratio)."""
     return 1 / ((axes[0]**2 + axes[1]**2) * integrals(axes)[0, 1])
 
 
@@ -31,8 +32,8 @@ def flatness(axes):
 
 
 def tank_treading(axes, ratio):
-    """Steady inclination in degrees, and rate at which the surface goes round, of Keller and Skalak's ellipsoid,
-    axes[0] > axes[1]; above largest_ratio there is none, nan."""
+    """Returns the steady inclination in degrees and the rate at which the surface rotates, of Keller and Skalak's ellipsoid with
+    axes[0] > axes[1]; NaN above largest_ratio, where there is no steady state."""
     a, b, _ = axes
     k = resistance(axes)
     rate = -k / (k - 1 + ratio) * a * b / (a * a - b * b)  # times cos 2 theta
@@ -42,15 +43,15 @@ def tank_treading(axes, ratio):
 
 
 def largest_ratio(axes):
-    """Viscosity ratio above which that ellipsoid tumbles."""
+    """Returns the viscosity ratio above which that ellipsoid tumbles."""
     a, b, _ = axes
     return 1 - resistance(axes) * (1 - 4 * a * a * b * b / (a**4 - b**4) / (1 - flatness(axes)))
 
 
 def images(box):
-    """Velocity gradient in the middle of a channel with walls at y = +-box[1]/2, periodic in x and z, that walls and images add
-    to a body with the stresslet S: (L_xy, L_yx) of S_xy = 1 and (L_xx, L_yy) of S_xx = -S_yy = 1. Walls for each wave (kx, kz)
-    as in exact.images_of_disc, images one by one, -3/(8 pi) x (x.S.x)/r^5, and as a sheet beyond a distance."""
+    """Returns the velocity gradient that walls and images add in the middle of a channel, with walls at y = +-box[1]/2, periodic in x
+    and z, for a body with the stresslet S: (L_xy, L_yx) of S_xy = 1 and (L_xx, L_yy) of S_xx = -S_yy = 1. Walls are treated for each
+    wave (kx, kz) as in exact.images_of_disc, images one by one, -3/(8 pi) x (x.S.x)/r^5, and as a sheet beyond a distance."""
     area, b, reach = box[0] * box[2], box[1] / 2, 60 * max(box)
     kx, kz = (2 * pi / side * numpy.arange(-n, n + 1) for side, n in ((side, int(5 * side / b)) for side in (box[0], box[2])))
     kx, kz = (q.ravel() for q in numpy.meshgrid(kx, kz))
@@ -68,8 +69,8 @@ def images(box):
 
 
 def flow_in(shape, ratio, added):
-    """Velocity gradient in the plane, and the strain rate along axis 3, in a drop whose ellipsoid is x.shape^-1.x = 1; `added`:
-    images(box), of its stresslet 2 (ratio - 1) e per volume, found in turn with the flow."""
+    """Returns the velocity gradient in the plane and the strain rate along axis 3 in a drop whose ellipsoid is x.shape^-1.x = 1.
+    `added`: images(box) of its stresslet 2 (ratio - 1) e per volume, found together with the flow by iteration."""
     squares, turn = numpy.linalg.eigh(shape[:2, :2])
     axes = numpy.sqrt([*squares, shape[2, 2]])
     eshelby = integrals(axes)
@@ -91,9 +92,9 @@ def flow_in(shape, ratio, added):
 
 
 def drop(axes, angle, ratio, times, box=None):
-    """Taylor deformation in the plane and inclination in degrees, counted on through turns, of a drop without tension, `ratio`
-    times as viscous, at times shear x t, from these axes, the first at `angle`; a rigid ellipsoid is one with a very large
-    ratio. In a box walls and images add what they do, to leading order in size over distance."""
+    """Returns the Taylor deformation in the plane and the inclination in degrees, accumulated over full turns, at times shear x t, of
+    a drop without tension that is `ratio` times as viscous and starts with these axes, the first at `angle`; a rigid ellipsoid is one
+    with a very large ratio. In a box, walls and images are included to leading order in size over distance."""
     added = images(box) if box is not None else numpy.zeros(4)
     c, s = numpy.cos(numpy.radians(angle)), numpy.sin(numpy.radians(angle))
     turn = numpy.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])

@@ -8,20 +8,20 @@ pi = math.pi
 
 
 def taylor_green(x, y, t, nu, mean):
-    """u of the advected vortices in the unit box (Taylor & Green 1937, and a Galilean transformation), k = 2 pi."""
+    """Returns u of the advected vortices in the unit box (Taylor & Green 1937, with a Galilean transformation), k = 2 pi."""
     k = 2 * pi
     return mean + math.exp(-2 * nu * k * k * t) * numpy.sin(k * (x - mean * t)) * numpy.cos(k * (y - mean * t))
 
 
 def channel_startup(y, t, g, height, nu):
-    """u between plates under a force from t = 0: parabola less its Fourier series (Batchelor 1967, section 4.3)."""
+    """Returns u between plates under a force from t = 0: the parabola less its Fourier series (Batchelor 1967, section 4.3)."""
     m = numpy.arange(1, 400, 2)[:, None] * pi
     decay = 4 * g * height**2 / (nu * m**3) * numpy.sin(m * y / height) * numpy.exp(-nu * (m / height)**2 * t)
     return g * y * (height - y) / (2 * nu) - decay.sum(axis=0)
 
 
 def duct_startup(t, g, side, nu):
-    """u in the middle of a square duct under a force from t = 0: double Fourier series."""
+    """Returns u in the middle of a square duct under a force from t = 0, by the double Fourier series."""
     m = numpy.arange(1, 200, 2)
     m, n = numpy.meshgrid(m, m)
     decay = nu * pi**2 * (m * m + n * n) / side**2
@@ -30,21 +30,23 @@ def duct_startup(t, g, side, nu):
 
 
 def womersley(y, t, force, omega, height, nu):
-    """u between plates under force cos(omega t), periodic state (Womersley 1955, plane)."""
+    """Returns u between plates under the force cos(omega t) in the periodic state (Womersley 1955, plane)."""
     k = cmath.sqrt(1j * omega / nu)
     shape = 1 - numpy.cosh(k * (y - height / 2)) / cmath.cosh(k * height / 2)
     return (force / (1j * omega) * shape * cmath.exp(1j * omega * t)).real
 
 
 def oscillating_wall(y, t, speed, omega, height, nu):
-    """u over a plate at rest, upper plate speed sin(omega t), periodic state (Stokes 1851, with two plates)."""
+    """Returns u over a plate at rest, with an upper plate of speed sin(omega t), in the periodic state (Stokes 1851, with two
+    plates)."""
     k = cmath.sqrt(1j * omega / nu)
     return (speed * numpy.sinh(k * y) / cmath.sinh(k * height) * cmath.exp(1j * omega * t)).imag
 
 
 class Layers:
-    """A solid layer 0 < y < 1/2 under fluid to y = 1, upper wall V sin(omega t), periodic state: both layers obey
-    linear equations at any amplitude, u = Im{uh(y) e^{i omega t}} (set-up of Sugiyama et al., J. Comput. Phys. 230, 2011)."""
+    """A solid layer 0 < y < 1/2 under fluid up to y = 1, with an upper wall of speed V sin(omega t), in the periodic state. Both
+    layers obey linear equations at any amplitude: u = Im{uh(y) e^{i omega t}} (set-up of Sugiyama et al., J. Comput. Phys. 230,
+    2011)."""
 
     def __init__(self, mu=1.0, modulus=5.0, speed=1.0, omega=pi, half=0.5):
         self.omega, self.half = omega, half
@@ -56,21 +58,21 @@ class Layers:
         self.b, self.c = ratio * self.a * cmath.cosh(self.ks * half), self.a * cmath.sinh(self.ks * half)
 
     def amplitude(self, y):
-        """Complex amplitude of u."""
+        """Returns the complex amplitude of u."""
         y = numpy.asarray(y)
         above = y - self.half
         fluid = self.b * numpy.sinh(self.kf * above) + self.c * numpy.cosh(self.kf * above)
         return numpy.where(y < self.half, self.a * numpy.sinh(self.ks * y), fluid)
 
     def shear_amplitude(self, y):
-        """|B_xy| in the solid."""
+        """Returns |B_xy| in the solid."""
         return abs(self.a * self.ks * numpy.cosh(self.ks * y) / (1j * self.omega))
 
 
 class TurnedLayers:
-    """Layers of solid and fluid, each of thickness `half`, in turn and without end: the slowest mode that is odd about their
-    middles, w = Re(f(eta) e^{s t}) along them, eta the distance from a solid layer's middle, and gamma = Re(f' e^{s t}/s)
-    the shear of the solid. As S1, linear at any amplitude. `strain` is |f'/s| at the surface."""
+    """An infinite sequence of alternating solid and fluid layers, each of thickness `half`, in the slowest mode that is odd about
+    their middles: w = Re(f(eta) e^{s t}) along them, with eta the distance from the middle of a solid layer, and gamma = Re(f' e^{s
+    t}/s) the shear of the solid. As in S1 the equations are linear at any amplitude. `strain` is |f'/s| at the surface."""
 
     def __init__(self, half, mu, modulus, strain, guess):
         def parts(s):
@@ -88,7 +90,7 @@ class TurnedLayers:
         self.b = -self.a * cmath.sinh(self.ks * half / 2) / cmath.sinh(self.kf * half / 2)
 
     def wrapped(self, eta):
-        """Distance from the nearest solid middle, and from the nearest fluid one, both with their signs."""
+        """Returns the signed distances from the nearest middle of a solid layer and from the nearest middle of a fluid layer."""
         period = 2 * self.half
         solid = eta - period * numpy.round(eta / period)
         return solid, eta - self.half - period * numpy.round((eta - self.half) / period)
@@ -100,26 +102,26 @@ class TurnedLayers:
         return (f * numpy.exp(self.s * t)).real
 
     def shear(self, eta, t):
-        """gamma; beyond the surface that of the surface."""
+        """Returns gamma; beyond the surface its value on the surface."""
         solid = numpy.clip(self.wrapped(eta)[0], -self.half / 2, self.half / 2)
         return (self.a * self.ks * numpy.cosh(self.ks * solid) / self.s * numpy.exp(self.s * t)).real
 
 
 def resting_layers(y, force, mu, half=0.5, height=1.0):
-    """u of fluid over a solid layer at rest under a body force: a parabola above y = half."""
+    """Returns u of fluid over a solid layer at rest under a body force: a parabola above y = half."""
     return numpy.where(y > half, force * (y - half) * (height - y) / (2 * mu), 0)
 
 
 def shear_wave(t, start, mu=0.01, modulus=1.0, k=2 * pi):
-    """Amplitude of u = V(t) sin ky in a box of solid, B = I at t = 0: s^2 + mu k^2 s + G k^2 = 0, exact at any amplitude."""
+    """Returns V of u = V(t) sin ky in a box of solid with B = I at t = 0: s^2 + mu k^2 s + G k^2 = 0, exact at any amplitude."""
     decay = mu * k * k / 2
     omega = math.sqrt(modulus * k * k - decay**2)
     return start * numpy.exp(-decay * t) * (numpy.cos(omega * t) - decay / omega * numpy.sin(omega * t))
 
 
 def disc_in_shear(capillary):
-    """Taylor deformation and inclination (degrees) of a disc in Stokes shear, unbounded: affine inside (Eshelby), so
-    Ca = D (1 + D^2)/(1 - D^2), cos 2 theta = 2 D/(1 + D^2)."""
+    """Returns the Taylor deformation and the inclination (degrees) of a disc in unbounded Stokes shear. The flow inside is affine
+    (Eshelby), so that Ca = D (1 + D^2)/(1 - D^2), cos 2 theta = 2 D/(1 + D^2)."""
     low, high = 0.0, 0.9
     while high - low > 1e-15:
         d = (low + high) / 2
@@ -130,7 +132,7 @@ def disc_in_shear(capillary):
 
 
 def bessel_j1(x):
-    """J_1 from a table (linear, spacing .005): to 2e-6 for 0 <= x <= 100."""
+    """Returns J_1, interpolated linearly in a table of spacing .005, with an error of 2e-6 for 0 <= x <= 100."""
     nodes, angle = numpy.linspace(0, 100, 20001), 2 * pi * numpy.arange(256) / 256
     values = numpy.concatenate([numpy.cos(angle - part[:, None] * numpy.sin(angle)).mean(axis=1)
                                 for part in numpy.array_split(nodes, 20)])
@@ -138,10 +140,10 @@ def bessel_j1(x):
 
 
 def ellipse_mobility(stretch, box, cut=60.0):
-    """Strain rate, averaged over an ellipse with semi-axes l and 1/l in a periodic Stokes fluid (a square box), that a
-    uniform stress diag(tau, -tau) in it causes, times -mu/tau: sum over k of |chi|^2/(A_box A) 2 kx^2 ky^2/k^4, chi the
-    transform of the ellipse. k = 0 is missing: the box as a whole does not stretch. Beyond the cut the weights count as
-    in an unbounded fluid, where all is 1/(4 cosh^2 ln l)."""
+    """Returns -mu/tau times the strain rate that a uniform stress diag(tau, -tau) in an ellipse causes, averaged over this ellipse
+    with semi-axes l and 1/l in a periodic Stokes fluid (a square box): the sum over k of |chi|^2/(A_box A) 2 kx^2 ky^2/k^4, with chi
+    the transform of the ellipse. k = 0 is excluded, since the box as a whole does not stretch. Weights beyond the cut are treated as
+    in an unbounded fluid, where the sum is 1/(4 cosh^2 ln l)."""
     k = 2 * pi / box * numpy.arange(-math.ceil(cut * stretch * box / (2 * pi)), math.ceil(cut * stretch * box / (2 * pi)) + 1)
     kx, ky = numpy.meshgrid(k, k, indexing="ij")
     q = numpy.hypot(kx * stretch, ky / stretch)
@@ -153,8 +155,8 @@ def ellipse_mobility(stretch, box, cut=60.0):
 
 
 def relaxing_disc(stretch, box, times):
-    """Stretch of a disc of radius 1 with B = diag(l^2, l^-2), let go in a periodic Stokes fluid, at times G t/mu: it
-    stays an ellipse, ds/dt = -G sinh(2s)/mu times the mobility, s = ln l. Unbounded: sinh s ~ exp(-G t/(2 mu))."""
+    """Returns the stretch of a disc of radius 1 with B = diag(l^2, l^-2) that is released in a periodic Stokes fluid, at times G t/mu.
+    It stays an ellipse: ds/dt = -G sinh(2s)/mu times the mobility, s = ln l. Unbounded: sinh s ~ exp(-G t/(2 mu))."""
     nodes = numpy.linspace(0, math.log(stretch), 7)
     factor = numpy.polyfit(nodes, [ellipse_mobility(math.exp(s), box) * 4 * math.cosh(s)**2 for s in nodes], 3)
 
@@ -173,11 +175,12 @@ def relaxing_disc(stretch, box, times):
 
 
 def added_by_walls(k, b):
-    """L_xy, L_yx of tau_xy and L_xx of tau_xx in images_of_disc, for each wave number k: what walls at y = +-b add."""
+    """Returns the contribution of walls at y = +-b to L_xy, L_yx of tau_xy and L_xx of tau_xx in images_of_disc, for each wave number
+    k."""
     c, s, e = numpy.cosh(k * b), numpy.sinh(k * b), numpy.exp(-k * b)
 
     def added(f, g):
-        """alpha, beta: alpha f + beta g takes b e^{-kb}/2 and its slope away at y = b; f, g: (value, slope) there."""
+        """Returns alpha, beta such that alpha f + beta g cancels b e^{-kb}/2 and its slope at y = b; f, g: (value, slope) there."""
         value, slope = b * e / 2, (1 - k * b) * e / 2
         determinant = f[0] * g[1] - f[1] * g[0]
         return (value * g[1] - slope * g[0]) / determinant, (slope * f[0] - value * f[1]) / determinant
@@ -186,9 +189,10 @@ def added_by_walls(k, b):
 
 
 def images_of_disc(height, length):
-    """Velocity gradient in the middle of a channel, periodic after `length`, that walls and images add where a body of
-    unit area has the deviatoric stress tau, viscosity 1: (L_xy, L_yx) of tau_xy and L_xx = -L_yy of tau_xx. Streamfunction
-    of a force dipole in Stokes flow, for each k the free one, -|y| e^{-k|y|}/2 or i y e^{-k|y|}/2, and what the walls add."""
+    """Returns the velocity gradient that walls and images add in the middle of a channel, periodic after `length`, where a body of
+    unit area has the deviatoric stress tau, viscosity 1: (L_xy, L_yx) of tau_xy and L_xx = -L_yy of tau_xx. The streamfunction is that
+    of a force dipole in Stokes flow: for each k the free one, -|y| e^{-k|y|}/2 or i y e^{-k|y|}/2, plus the contribution of the
+    walls."""
     k = 2 * pi / length * numpy.arange(1, math.ceil(20 * length / height) + 1)
     xy, yx, xx = (part.sum() for part in added_by_walls(k, height / 2))
     # k = 0, and sums less integrals of the free part: sum of n is -1/12.
@@ -197,7 +201,7 @@ def images_of_disc(height, length):
 
 
 def runge_kutta(rate, x, dt):
-    """x after dt, dx/dt = rate(x): the classical scheme of fourth order."""
+    """Returns x after dt for dx/dt = rate(x), by the classical scheme of fourth order."""
     k1 = rate(x)
     k2 = rate(x + dt / 2 * k1)
     k3 = rate(x + dt / 2 * k2)
@@ -205,10 +209,10 @@ def runge_kutta(rate, x, dt):
 
 
 def sheared_disc(capillary, times, height=math.inf, length=math.inf):
-    """Taylor deformation and B (xx, xy, yy) at times (shear rate x t) of a disc of radius 1, viscosity and shear rate 1,
-    modulus 1/Ca, put at rest into Stokes shear: it stays an ellipse with uniform B (Eshelby), B' = L B + B L^T, L the flow's
-    and -G/(2 mu) (B - tr/2)/(1 + tr/2), its own. Walls at that height and images at that length add to L what they do to a
-    point: the square of 7.74/height^2 is neglected."""
+    """Returns the Taylor deformation and B (xx, xy, yy), at times (shear rate x t), of a disc of radius 1, with viscosity and shear
+    rate 1 and modulus 1/Ca, that is put at rest into Stokes shear. It stays an ellipse with uniform B (Eshelby): B' = L B + B L^T,
+    where L is the sum of the gradient of the flow and of -G/(2 mu) (B - tr/2)/(1 + tr/2) of the disc. Walls at `height` and images at
+    `length` add to L as for a point-like body; the square of 7.74/height^2 is neglected."""
     xy, yx, xx = images_of_disc(height, length) if height < math.inf else (0, 0, 0)
 
     def rate(b):
@@ -228,18 +232,19 @@ def sheared_disc(capillary, times, height=math.inf, length=math.inf):
 
 
 def stretch_deformation(xx, xy, yy):
-    """Taylor deformation of the ellipse that a circle with this B is: (r - 1)/(r + 1), r^2 the ratio of its principal values."""
+    """Returns the Taylor deformation (r - 1)/(r + 1) of the ellipse that a circle with this B becomes; r^2 is the ratio of its
+    principal values."""
     middle, radius = (xx + yy) / 2, numpy.hypot((xx - yy) / 2, xy)
     r = numpy.sqrt((middle + radius) / (middle - radius))
     return (r - 1) / (r + 1)
 
 
 def sheared_circle(strain):
-    """Taylor deformation of a circle after simple shear: principal stretches e^{+-s}, sinh s = strain/2."""
+    """Returns the Taylor deformation of a circle after simple shear: principal stretches e^{+-s}, sinh s = strain/2."""
     return math.tanh(math.asinh(strain / 2))
 
 
 def red_cell_thickness(r, diameter=8.0):
-    """Evans & Fung, Microvasc. Res. 4 (1972)."""
+    """Returns the thickness of a red cell at the distance r from its axis (Evans & Fung, Microvasc. Res. 4, 1972)."""
     q = numpy.clip(2 * r / diameter, 0, 1)
     return diameter / 2 * numpy.sqrt(1 - q**2) * (0.207161 + 2.002558 * q**2 - 1.122762 * q**4)

@@ -1,4 +1,4 @@
-"""F1 ... F7: flows without bodies."""
+"""F1 to F7: flows without bodies."""
 import math
 
 import numpy
@@ -16,7 +16,7 @@ def vortices_error(run):
 
 
 def vortices_line(run):
-    """u on y = 0, where it is largest: by the cubic through the four rows around it, as no row lies there."""
+    """Returns u on y = 0, where it is largest, interpolated by the cubic through the four nearest rows, since no row lies there."""
     snapshot = run.snapshots[-1]
     u = snapshot["velocity_x"][0]
     x, fine = numpy.arange(u.shape[1]) / u.shape[1], numpy.linspace(0, 1, 201)
@@ -25,7 +25,7 @@ def vortices_line(run):
 
 # F3
 def startup_error(run):
-    """Mid-channel velocity over nu t/H^2 >= .05, in units of g H^2/nu."""
+    """Returns the error of the mid-channel velocity for nu t/H^2 >= .05, in units of g H^2/nu."""
     here = run.probes.time >= 0.05 - 1e-9
     want = [exact.channel_startup(numpy.array([0.5]), t, 1, 1, 1)[0] for t in run.probes.time[here]]
     return float(numpy.abs(run.probes.velocity_x[here] - want).max())
@@ -37,7 +37,8 @@ def startup_line(run):
 
 
 def duct_error(run):
-    """Largest at any row, of the final velocity; the middle of an even number of cells is a corner of four: interpolated."""
+    """Returns the largest error of any row, relative to the final velocity; on an even number of cells the middle is the common corner
+    of four cells and is interpolated."""
     want = exact.duct_startup(run.probes.time, 1, 1, 1)
     return float(numpy.abs(run.probes.velocity_x - want).max() / exact.duct_startup(9, 1, 1, 1)[0])
 
@@ -49,7 +50,7 @@ def duct_line(run):
 
 # F4
 def oscillation_error(solution):
-    """rms over y and the last period, relative to the largest velocity."""
+    """Returns the rms error over y and the last period, relative to the largest velocity."""
     def error(run):
         t, y, u, _ = profile_times(run.profile["y"])
         last = t > t[-1] - 1 + 1e-6
@@ -75,13 +76,13 @@ def stokes(y, t):
 
 # F6
 def parabola(s, f, i):
-    """Extremum of the parabola through three neighbouring values."""
+    """Returns the extremum of the parabola through three neighbouring values."""
     a, b = (f[i + 1] - 2 * f[i] + f[i - 1]) / 2, (f[i + 1] - f[i - 1]) / 2
     return f[i] - b * b / (4 * a)
 
 
 def cubic(s, nodes, values):
-    """Interpolation by the cubic through four equidistant nodes around s."""
+    """Interpolates by the cubic through four equidistant nodes around s."""
     i = numpy.clip(numpy.searchsorted(nodes, s) - 2, 0, len(nodes) - 4)
     t = (s - nodes[i]) / (nodes[1] - nodes[0])
     weights = (-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,
@@ -98,7 +99,7 @@ def cavity_extremum(direction, find):
 
 
 def cavity_error(name):
-    """Largest distance of u(1/2, y) and v(x, 1/2) from the reference profiles."""
+    """Returns the largest distance of u(1/2, y) and v(x, 1/2) from the reference profiles."""
     def error(run):
         table, worst = reference(name), 0
         for direction, c in (("y", 1), ("x", 2)):
@@ -142,12 +143,12 @@ def layer_energy(t):
 
 
 def layer_growth(run):
-    """Largest rise of the kinetic energy from one line to the next, relative."""
+    """Returns the largest relative increase of the kinetic energy from one row to the next."""
     return float(max(0, numpy.diff(energy(run)).max()) / energy(run)[0])
 
 
 def vortices_in_layers(run):
-    """Maxima of |vorticity| (9 x 9 cells around are lower) above 3/10 of the largest: one per layer and no other."""
+    """Counts the maxima of |vorticity| among 9 x 9 cells above 3/10 of the largest: there should be exactly one per layer."""
     u, v = run.snapshots[-1]["velocity_x"][0].astype(float), run.snapshots[-1]["velocity_y"][0].astype(float)
     n = len(u)
     w = numpy.abs((v - numpy.roll(v, 1, 1)) * n - (u - numpy.roll(u, 1, 0)) * n)

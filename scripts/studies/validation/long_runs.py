@@ -1,4 +1,4 @@
-"""L1 ... L3, S6: bodies that are sheared for a long time or carried far, so that errors accumulate. Keys are cells per radius."""
+"""L1 to L3, S6: bodies that are sheared for a long time or carried far, so that errors accumulate. Keys are cells per radius."""
 import math
 
 import numpy
@@ -11,23 +11,23 @@ WHY = "goal"
 
 
 def at(*resolutions, parts=None):
-    """A setting for each resolution, so that each has rows of its own; `parts`: the runs that it takes."""
+    """Returns a setting for each resolution, so that each has rows of its own; `parts`: the runs that each setting needs."""
     return tuple(Setting("fast", "acm", tuple((n, part) for part in parts) if parts else (n,)) for n in resolutions)
 
 
 def reach(coarse, middle, fine=None):
-    """Tolerances at 8, 16 and 32 cells per radius."""
+    """Returns the tolerances at 8, 16 and 32 cells per radius."""
     limits = {8: coarse, 16: middle, 32: fine}
     return {"fast": lambda key: limits[key[0] if isinstance(key, tuple) else key]}
 
 
 def kept(why, coarse, middle, fine=None):
-    """What is kept instead."""
+    """Returns the second bounds, for rows that miss their tolerances."""
     return {"fast": (reach(coarse, middle, fine)["fast"], why)}
 
 
 def box(n, x, y=None):
-    """In radii."""
+    """Options of a box whose size is given in radii."""
     y = y or x
     return {"grid_cells": f"{x * n},{y * n},1", "grid_length": f"{x},{y},1", "snapshot_interval": 0}
 
@@ -37,7 +37,7 @@ def deformation(run, t):
 
 
 def axes(run):
-    """D e^{2 i theta} in time."""
+    """Returns D e^{2 i theta} over time."""
     return run.bodies.taylor_deformation[:, 0] * numpy.exp(2j * numpy.radians(run.bodies.inclination[:, 0]))
 
 
@@ -57,7 +57,7 @@ def strained(run):
 
 
 def drift(run):
-    """From strain 20 to 40, of the means over a strain of 2 there."""
+    """Returns the relative change of D from strain 20 to 40, of means over a strain of 2."""
     early, late = [deformation(run, (numpy.linspace(-2, 0, 21) + strain) / RATE).mean() for strain in (22, 40)]
     return float(late / early - 1)
 
@@ -72,14 +72,14 @@ def exact_shear(capillary, size, times):
 
 
 def shape_error(run):
-    """Largest from strain 1 on, of the final D."""
+    """Returns the largest error of D from strain 1 on, relative to the final D."""
     here = run.bodies.time >= 1 / RATE - 1e-9
     want = exact_shear(.1, 16, run.bodies.time[here])[:, 0]
     return float(numpy.abs(run.bodies.taylor_deformation[here, 0] - want).max() / want[-1])
 
 
 def strain_deformation(snapshot):
-    """D of the mean of B over the cells that are full, off-diagonals averaged from their four edges."""
+    """Returns D of the mean of B over the full cells, with off-diagonals averaged from their four edges."""
     full = snapshot["solid_fraction"][0] > 0.999
     xx, yy, xy = [snapshot[f"left_cauchy_green_{c}"][0].astype(float) for c in ("xx", "yy", "xy")]
     xy = (xy + numpy.roll(xy, -1, 0) + numpy.roll(xy, -1, 1) + numpy.roll(xy, (-1, -1), (0, 1))) / 4  # no disc at the walls
@@ -97,7 +97,7 @@ def strain_error(run):
 
 
 def disagreement(run):
-    """Of D from the shape and from B, largest."""
+    """Returns the largest relative difference of D from the shape and from B."""
     late = late_snapshots(run)
     return max(abs(strain_deformation(s) / deformation(run, s.time) - 1) for s in late)
 
@@ -158,7 +158,7 @@ def passive_options(angle, courant, far=22):
 
 
 def lost(run):
-    """Of D e^{2 i theta} at the start, which the cells know to (h/R)^2/3."""
+    """Returns the change of D e^{2 i theta} relative to the start, which the cells resolve to (h/R)^2/3."""
     d = axes(run)
     return float(abs(d[-1] / d[0] - 1))
 

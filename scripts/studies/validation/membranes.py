@@ -96,7 +96,7 @@ def small(key, _):
 
 
 def small_limit(run):
-    """D/Ca between these walls and images."""
+    """Returns D/Ca with these walls and images."""
     return SMALL[0] / (1 - 10 / 3 * numpy.pi * ellipsoids.images(run.length)[:2].sum())
 
 
@@ -109,7 +109,7 @@ def small_line(run):
 
 
 def slow_rate(run):
-    """Of what is missing to the end: its change decays alike."""
+    """Returns the rate at which D approaches its end, from the decay of its derivative."""
     t, d = run.bodies.time, run.bodies.taylor_deformation[:, 0]
     middle, slope = (t[1:] + t[:-1]) / 2, numpy.diff(d) / numpy.diff(t)
     late = (middle > .12) & (middle < .4)
@@ -117,7 +117,7 @@ def slow_rate(run):
 
 
 def unbounded_rate(runs):
-    """On the finest grid, with what walls and images take there, by (a/L)^3, from two boxes on the coarsest one."""
+    """Returns the rate on the finest grid, corrected for walls and images by (a/L)^3, from two boxes on the coarsest grid."""
     rates = {key: slow_rate(run) for key, run in runs.items()}
     if len(rates) < 3:
         return list(rates.values())[-1]
@@ -135,7 +135,7 @@ def tweezers(force, _):
 
 
 def diameters(run):
-    """Along x and y of the silhouette along z, of the surface phi = 1/2."""
+    """Returns the diameters along x and y of the silhouette along z of the surface phi = 1/2."""
     silhouette = run.snapshots[-1]["solid_fraction"].max(axis=0)
     found = []
     for across, spacing in ((0, run.spacing[0]), (1, run.spacing[1])):
@@ -155,7 +155,7 @@ def tweezer_measures():
 
 
 def tweezer_line(runs):
-    """Axial diameters over the force, then transverse ones; of the experiment with their errors."""
+    """Returns the axial and then the transverse diameters over the force, with the error bars of the experiment."""
     found = numpy.array([(TWEEZERS[force][0], *diameters(run)) for force, run in runs.items()])
     force, axial, axial_error, transverse, transverse_error = reference("mills_2004_tweezers").T
 

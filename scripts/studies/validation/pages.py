@@ -1,4 +1,4 @@
-"""docs/validation.md, the pages of docs/validation/ and rows.csv, from the rows that report.py judges."""
+"""Writes docs/validation.md, the pages of docs/validation/ and rows.csv from the rows that report.py judges."""
 import csv
 import re
 
@@ -74,7 +74,7 @@ def rows_file(page):
 
 
 def rows_of(page):
-    """The rows that write_page() has written beside the path `page`."""
+    """Returns the rows that write_page() has written beside the page `path`."""
     with rows_file(page).open(newline="") as file:
         return list(csv.DictReader(file))
 
@@ -90,14 +90,14 @@ def updated(page, rows, made, order):
 
 
 def by_family(rows):
-    """Names of the cases, in the order of the families and of their numbers."""
+    """Returns the names of the cases in the order of families and numbers."""
     names = {row["case"] for row in rows}
     return [name for page in FAMILIES
             for name in sorted((name for name in names if belongs(page, name)), key=lambda name: ("FSRLV".index(name[0]), int(name[1:])))]
 
 
 def summary(rows, titles):
-    """One row per case: how many of its measures passed, missed as documented, failed, or are reported."""
+    """Returns one row per case: how many of its measures passed, missed as documented, failed, or are reported."""
     lines = ["| case | what | passed | missed as documented | failed | reported | page |", "|---|---|---|---|---|---|---|"]
     for name in by_family(rows):
         verdicts = [row["verdict"] for row in rows if row["case"] == name]
@@ -108,7 +108,7 @@ def summary(rows, titles):
 
 
 def table(rows):
-    """The rows of one case; reasons of tolerances as letters, which a list below the table explains."""
+    """Returns the rows of one case, with letters for the reasons of tolerances, which a list below the table explains."""
     reasons = list(dict.fromkeys(row["tolerance from"] for row in rows if row["tolerance from"]))
     letters = {reason: chr(ord("a") + n) for n, reason in enumerate(reasons)}
     shown = [column for column in HEADER if column != "tolerance from"]
@@ -126,7 +126,8 @@ def table(rows):
 
 
 def section(name, rows, title, picture):
-    """One case: what is solved, reference, picture, notes and table. The heading is its name, so that links to it stay short."""
+    """Returns the section of one case: the problem, the reference, the picture, notes and the table. The heading is the name of the
+    case, so that links to it stay short."""
     solved, reference = SUBJECTS.get(name, ("", ""))
     title = TITLES.get(name, title)
     parts = [f"## {name}", f"**{title}.** {solved}", f"**Reference.** {reference}"]

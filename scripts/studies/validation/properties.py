@@ -1,11 +1,11 @@
-"""S12: exact properties. Pairs of runs of which one is changed in a way that must have no effect."""
+"""S12: exact properties. In each pair of runs, one is changed in a way that must have no effect."""
 import numpy
 
 from .case import Case, Measure, every
 
 
 def difference(value, change):
-    """Largest distance between value(first) and change(value(second)), relative to the largest value."""
+    """Returns the largest distance between value(first) and change(value(second)), relative to the largest value."""
     def distance(runs):
         first, second = [value(run) for run in runs.values()]
         return float(numpy.abs(first - change(second)).max() / numpy.abs(first).max())
@@ -21,7 +21,7 @@ def mirrored_in_y(v):
 
 
 def rotated(v):
-    """Back by 90 degrees: the value at (x, y) is that at (1 - y, x), turned."""
+    """Rotates back by 90 degrees: the value at (x, y) is the rotated value at (1 - y, x)."""
     turned = numpy.rot90(v, 1, axes=(1, 2))
     return numpy.stack([turned[1], -turned[0]])
 
@@ -34,7 +34,8 @@ def mirror_options(n):
 
 
 def cavity_options(key, _):
-    """The lid above, or the same scene turned by 90 degrees: the lid at the left, upwards."""
+    """Options of a cavity with the lid at the top, or of the same scene turned by 90 degrees, with the lid at the left, moving
+    upwards."""
     turned = key == "turned"
     return {"grid_cells": "48,48,1", "time_end": 2, "snapshot_interval": 2, "snapshot_precision": "double",
             "boundary_ymax_velocity": "0,0,0" if turned else "1,0,0", "boundary_xmin_velocity": "0,1,0" if turned else "0,0,0",
@@ -48,7 +49,7 @@ def stressless_options(key, _):
 
 
 def recovery_options(key, folder):
-    """A disc in shear, then the same state between walls at rest."""
+    """Options of a disc in shear, then of the same state between walls at rest."""
     n, part = key
     common = {"grid_cells": f"{n},{n},1", "grid_length": "8,8,1", "disc_shear_modulus": 0.5, "snapshot_precision": "double",
               "snapshot_fields": "velocity,pressure,solid_fraction,body,left_cauchy_green"}
@@ -66,7 +67,7 @@ def speed_left(runs):
 
 
 def strain(run):
-    """rms of B - I in the body."""
+    """Returns the rms of B - I in the body."""
     s = run.snapshots[-1]
     phi = s["solid_fraction"]
     squares = sum((s[f"left_cauchy_green_{c}"] - i)**2 for c, i in (("xx", 1), ("yy", 1), ("xy", 0)))
@@ -91,7 +92,7 @@ def strain_order(runs):
 
 
 def row_of_u(change):
-    """u on a line along y of the first run, beside that of the second one."""
+    """Returns u on a line along y of both runs."""
     def line(runs):
         first, second = runs.values()
         u, other = velocity(first)[0], change(velocity(second))[0]
@@ -100,7 +101,7 @@ def row_of_u(change):
 
 
 def recovery_line(runs):
-    """D over its start in the finest pair, while the walls rest: it vanishes."""
+    """Returns D relative to its start in the finest pair, while the walls rest; it should vanish."""
     run = runs[max(n for n, _ in runs), "released"]
     t, d = run.bodies.time, run.bodies.taylor_deformation[:, 0]
     return (t, d / d[0]), ([t[-1] / 2, t[-1]], [0, 0])

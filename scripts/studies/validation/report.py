@@ -17,7 +17,7 @@ def failed(case, setting, text):
 
 
 def judge(case, setting, runs, measure):
-    """Rows of one measure: the value at the finest key and, if asked for, the order."""
+    """Returns the rows of one measure: the value at the finest key and, if requested, the order."""
     def error(value):
         return abs(value - measure.reference) / (abs(measure.reference) if measure.relative else 1)
 
@@ -57,7 +57,7 @@ def judge(case, setting, runs, measure):
 
 
 def observed_order(ladder):
-    """Of the two finest grids; None where keys are not cells."""
+    """Returns the order between the two finest grids; None where keys are not cells."""
     if len(ladder) < 2 or not all(isinstance(k, int) for k, _ in ladder):
         return None
     (n, e), (m, f) = ladder[-2:]
@@ -65,7 +65,8 @@ def observed_order(ladder):
 
 
 def draw_reference(axis, reference, label):
-    """Exact solutions and limits as a broad line; the few points of a published table, with their errors if it has them, as marks."""
+    """Draws exact solutions and limits as a broad line, and the few points of a published table as marks, with error bars if it has
+    them."""
     x, y, *errors = (numpy.asarray(part, dtype=float) for part in reference)
     if errors:
         axis.errorbar(x, y, errors[0] if numpy.any(errors[0]) else None, label=label, capsize=3, elinewidth=1, **style.TABLE)
@@ -76,7 +77,7 @@ def draw_reference(axis, reference, label):
 
 
 def same_curve(one, other):
-    """Whether two references are one: the same values where both are known."""
+    """Returns whether two references have the same values where both are known."""
     (x, y, *_), (a, b, *_) = one, other
     if numpy.any(numpy.diff(x) <= 0) or numpy.any(numpy.diff(a) <= 0):
         return numpy.shape(x) == numpy.shape(a) and numpy.allclose(y, b, equal_nan=True)
@@ -84,7 +85,7 @@ def same_curve(one, other):
 
 
 def draw_case(axis, case, results):
-    """The finest run of every setting over the references: one, unless they differ from setting to setting."""
+    """Draws the finest run of every setting over the references: a single one, unless they differ between settings."""
     drawn, labels = [], [setting.label for setting, _ in results]
     for n, (setting, runs) in enumerate(results):
         key = list(runs)[-1]
@@ -106,14 +107,14 @@ def draw_case(axis, case, results):
 
 
 def legend_entries(axis):
-    """Handles and labels, each label once, the reference last."""
+    """Returns handles and labels, each label once, the reference last."""
     entries = dict(zip(*reversed(axis.get_legend_handles_labels())))
     labels = sorted(entries, key=lambda label: label == "reference")
     return {"handles": [entries[label] for label in labels], "labels": labels}
 
 
 def one_legend_will_do(axes):
-    """Whether no two labels of these axes look alike."""
+    """Returns whether no two labels of these axes look alike."""
     looks = {}
     for axis in axes:
         for line in axis.lines:
@@ -122,7 +123,7 @@ def one_legend_will_do(axes):
 
 
 def draw(cases, results, path):
-    """All cases of one name side by side."""
+    """Draws all cases of one name side by side."""
     columns = 1 if len(cases) == 1 else 2 if len(cases) < 5 else 3
     figure, axes = style.panels(len(cases), columns, height=3.2 if columns < 3 else 2.9)
     for axis, case in zip(axes, cases):

@@ -36,7 +36,7 @@ def array(fraction, settings, quick):
 
 
 def steady(table, value):
-    """A reference that is known of the end alone."""
+    """Returns a reference that is known for the end only."""
     return table.time[[0, -1]], [value, value]
 
 
@@ -48,7 +48,7 @@ def tube_options(across, _):
 
 @functools.lru_cache(maxsize=None)
 def zeros():
-    """The first zeros of J_0: Newton from (m - 1/4) pi."""
+    """Returns the first zeros of J_0, by Newton from (m - 1/4) pi."""
     found = []
     for m in range(1, 7):
         z = (m - .25) * math.pi
@@ -59,8 +59,8 @@ def zeros():
 
 
 def tube_startup(t):
-    """Mean velocity of the box when a force of 1 starts the fluid of viscosity and density 1 in the tube (Szymanski, J. Math. Pures
-    Appl. 11, 1932)."""
+    """Returns the mean velocity of the box when a force of 1 starts the fluid of viscosity and density 1 in the tube (Szymanski, J.
+    Math. Pures Appl. 11, 1932)."""
     return math.pi * (ACROSS / 2)**4 / 8 * (1 - sum(32 / z**4 * numpy.exp(-z**2 * t / (ACROSS / 2)**2) for z in zeros()))
 
 
@@ -78,7 +78,7 @@ EXACT_GRADIENT = -12.8 / (math.pi * ACROSS**4)
 
 
 def gradient_line(runs):
-    """Its error over the cells across, and second order through the finest one."""
+    """Returns the error of the gradient over the cells across, and the line of second order through the finest one."""
     across = numpy.array(list(runs))
     errors = numpy.array([100 * abs(gradient(run) / EXACT_GRADIENT - 1) for run in runs.values()])
     return (across, errors), (across[[0, -1]], errors[-1] * (across[-1] / across[[0, -1]])**2)
@@ -90,18 +90,18 @@ PERIODS = 6
 
 
 def bessel(order, z):
-    """J_0 or J_1 by its power series."""
+    """Returns J_0 or J_1 by its power series."""
     return sum((-1)**m * (z / 2)**(2 * m + order) / (math.factorial(m) * math.factorial(m + order)) for m in range(60))
 
 
 def womersley_flow():
-    """Complex mean velocity of the box under a force cos(frequency t): Womersley (1955)."""
+    """Returns the complex mean velocity of the box under a force cos(frequency t): Womersley (1955)."""
     z = WOMERSLEY * 1j**1.5
     return (1 - 2 * bessel(1, z) / (z * bessel(0, z))) / (1j * FREQUENCY) * math.pi * (ACROSS / 2)**2
 
 
 def pulse(run):
-    """The same, of the last period: least squares."""
+    """Returns the same quantity of a run, by least squares over the last period."""
     t, u = run.series.time, run.series.bulk_velocity_x
     last = t > t[-1] * (1 - 1 / PERIODS)
     waves = numpy.stack([numpy.cos(FREQUENCY * t[last]), -numpy.sin(FREQUENCY * t[last])], axis=1)
@@ -116,13 +116,15 @@ def pulse_options(across, _):
 
 
 def late(run):
-    """Drag and lift coefficients of a periodic wake, 20 times the force per depth, in its last 2.5 units of time."""
+    """Returns times, drag and lift coefficients of a periodic wake, which are 20 times the force per depth, in the last 2.5 units of
+    time."""
     last = run.bodies.time > run.bodies.time[-1] - 2.5
     return run.bodies.time[last], *20 * run.bodies.force[last, 0, :2].T
 
 
 def strouhal(run):
-    """Diameter .1, mean velocity 1: frequency of the lift between its first and last rise through its mean."""
+    """Returns the Strouhal number, with diameter .1 and mean velocity 1: the frequency of the lift between its first and last rise
+    through its mean."""
     t, _, lift = late(run)
     lift = lift - lift.mean()
     at = numpy.flatnonzero((lift[:-1] < 0) & (lift[1:] >= 0))
@@ -131,8 +133,8 @@ def strouhal(run):
 
 
 def swinging(run):
-    """Coefficients of drag and of added mass, diameter, density and largest speed 1: the force of Morison et al. (1950) that fits
-    the last period best."""
+    """Returns the coefficients of drag and of added mass, with diameter, density and largest speed 1: those of the force of Morison et
+    al. (1950) that fits the last period best."""
     frequency, last = 2 * math.pi / 5, run.bodies.time > run.bodies.time[-1] - 5
     t, force = run.bodies.time[last], run.bodies.force[last, 0, 0]
     speed, rate = -numpy.cos(frequency * t), frequency * numpy.sin(frequency * t)
@@ -141,7 +143,7 @@ def swinging(run):
 
 
 def swinging_line(run):
-    """In the last period; that of the published coefficients."""
+    """Returns the force in the last period, and that of the published coefficients."""
     frequency, last = 2 * math.pi / 5, run.bodies.time > run.bodies.time[-1] - 5
     t = run.bodies.time[last]
     speed, rate = -numpy.cos(frequency * t), frequency * numpy.sin(frequency * t)
@@ -157,7 +159,8 @@ def torque_line(run):
 
 
 def upper_share():
-    """What leaves upwards from the bifurcation as a network of Poiseuille's resistances along its axes (scripts/make_vessel)."""
+    """Returns the share of the flow that leaves the bifurcation upwards, by a network of Poiseuille's resistances along its axes
+    (scripts/make_vessel)."""
     per_length = 8 * 1.2 / (math.pi * 5.5**4)
     ahead, up = 40, math.dist((32, 16), (43, 25)) + math.dist((43, 25), (47, 33)) + math.dist((47, 33), (48, 42)) + 6
     return per_length * ahead / (per_length * (ahead + up) + .05)
@@ -169,7 +172,7 @@ STEP = {"reattachment below": 12.20, "separation above": 9.70, "reattachment abo
 
 
 def step_options(n, _):
-    """The parabola 24 (y - 1/2)(1 - y) of the upper half, its mean over every cell."""
+    """Options with the parabola 24 (y - 1/2)(1 - y) of the upper half as inlet profile, averaged over every cell."""
     path = ROOT / "build" / f"backward_step_inlet_{n}.txt"
     path.parent.mkdir(exist_ok=True)
     y = numpy.clip(numpy.arange(n + 1) / n, .5, 1)
@@ -178,7 +181,8 @@ def step_options(n, _):
 
 
 def turns(run, row, beside):
-    """Where the shear on a wall changes its sign, in step heights; below the corner's eddy is the first."""
+    """Returns the positions where the shear on a wall changes sign, in step heights; on the lower wall the first one belongs to the
+    corner eddy."""
     u = run.snapshots[-1].velocity()[0][0]
     shear = 9 * u[row] - u[beside]
     x = (numpy.arange(len(shear)) + .5) * run.spacing[0]
@@ -187,7 +191,7 @@ def turns(run, row, beside):
 
 
 def fork_options(n, _):
-    """Steady inflow: the file's period wants a table."""
+    """Options of a steady inflow, as a table, since the case has a period."""
     path = ROOT / "build/bifurcation_steady.csv"
     path.parent.mkdir(exist_ok=True)
     path.write_text("time,value\n0,5\n360,5\n")
@@ -196,7 +200,7 @@ def fork_options(n, _):
 
 
 def step_line(row, beside, published):
-    """The shear rate on a wall, mean velocity and height of the channel 1, and the published places where it is 0."""
+    """Returns the shear rate on a wall, with mean velocity and channel height 1, and the published positions where it is 0."""
     def line(run):
         u = run.snapshots[-1].velocity()[0][0]
         shear = (9 * u[row] - u[beside]) / (3 * run.spacing[1])

@@ -1,5 +1,5 @@
-"""Runs the program for the cases. A finished run is kept, under a key of its options, its file and the program;
-one that was killed goes on from its last checkpoint."""
+"""Runs the program for the cases. A finished run is kept, under a key of its options, its file and the program; an interrupted run
+continues from its last checkpoint."""
 import collections
 import hashlib
 import json
@@ -41,7 +41,7 @@ class Runner:
         return [str(self.program), str(file), *words], directory
 
     def written(self, datasets):
-        """File of these datasets, named by what they hold."""
+        """Writes a file with these datasets, which is named after its content. Returns its path."""
         digest = hashlib.sha256()
         for name, values in sorted(datasets.items()):
             digest.update(name.encode() + values.tobytes())
@@ -76,7 +76,7 @@ class Runner:
         return Run(directory)
 
     def chain(self, case, setting, more):
-        """All keys of a setting, in their order: {key: run}; what a key's options need of earlier ones is there."""
+        """Runs all keys of a setting in their order, so that results of earlier keys are available. Returns {key: run}."""
         runs, directories = {}, {}
         for key in setting.keys:
             words, directories[key] = self.command(case, setting, key, directories.__getitem__, more)

@@ -1,4 +1,4 @@
-"""S1, S3 ... S5: solids whose motion is known exactly at any amplitude."""
+"""S1, S3 to S5: solids whose motion is known exactly at any amplitude."""
 import math
 
 import numpy
@@ -12,7 +12,7 @@ WHOLE = {"snapshot_precision": "double", "snapshot_fields": "velocity,left_cauch
 
 # S1
 def quarters(run, value):
-    """Amplitude of value(snapshot) over the last period, from four snapshots a quarter of it apart."""
+    """Returns the amplitude of value(snapshot) over the last period, from four snapshots a quarter period apart."""
     t = numpy.array([s.time for s in run.snapshots])
     last = [run.snapshots[int(numpy.abs(t - (t[-1] - q / 2)).argmin())] for q in range(4)]
     waves = numpy.array([numpy.exp(-1j * LAYERS.omega * s.time) for s in last])
@@ -22,7 +22,7 @@ def quarters(run, value):
 
 def interface_speed(run):
     def at_half(snapshot):
-        """Mean of what both sides extrapolate to: du/dy jumps there."""
+        """Returns the mean of the extrapolations from both sides, since du/dy is discontinuous there."""
         u = snapshot["velocity_x"][0, :, 0]
         m = len(u) // 2
         return (3 * u[m - 1] - u[m - 2] + 3 * u[m] - u[m + 1]) / 4
@@ -30,12 +30,12 @@ def interface_speed(run):
 
 
 def shear_at(fraction):
-    """B_xy on the edge at that part of the height."""
+    """Returns the amplitude of B_xy on the edge at this fraction of the height."""
     return lambda run: quarters(run, lambda s: s["left_cauchy_green_xy"][0, :, 0][int(fraction * s["velocity_x"].shape[1])])
 
 
 def layers_error(run):
-    """rms of u(y) over a period, relative to the wall's speed."""
+    """Returns the rms error of u(y) over a period, relative to the speed of the wall."""
     t, y, u, _ = profile_times(run.profile["y"])
     last = t > t[-1] - 2 + 1e-6
     want = numpy.array([(LAYERS.amplitude(y) * numpy.exp(1j * LAYERS.omega * time)).imag for time in t[last]])
@@ -78,7 +78,7 @@ def viscous_error(run):
 
 
 def viscous_rate(name):
-    """Of the exact one."""
+    """Returns the rate relative to the exact one."""
     def rate(run):
         y0 = surface(run)
         length = float(run.options["grid_length"].split(",")[0])
@@ -99,7 +99,7 @@ def viscous_line(run):
 
 # S4
 def wave_setup(a, b, mean):
-    """The wave u_a(b), in a 2-D box along x or y, in a thin 3-D one along z; `mean` is a velocity along b."""
+    """Options of the wave u_a(b), in a 2-D box along x or y, in a thin 3-D one along z; `mean` is a velocity along b."""
     def options(n, _):
         cells = [4, 4, 4 if "z" in (a, b) else 1]
         cells["xyz".index(b)] = n
@@ -166,7 +166,7 @@ def stagnation(run):
 
 
 def stagnation_exact(t, nu=0.01, k=2 * math.pi):
-    """B_xx = exp(2 k int_0^t e^{-2 nu k^2 s} ds) where u = sin kx cos ky e^{-2 nu k^2 t} stretches most."""
+    """Returns B_xx = exp(2 k int_0^t e^{-2 nu k^2 s} ds) at the point where u = sin kx cos ky e^{-2 nu k^2 t} stretches most."""
     return math.exp(2 * k * (1 - math.exp(-2 * nu * k * k * t)) / (2 * nu * k * k))
 
 
@@ -176,7 +176,8 @@ def stagnation_line(run):
 
 
 def centre_rotation(run):
-    """|B - I| in the vortex' centre (1/4, 1/4), which only turns: largest of the components there, four cells' mean."""
+    """Returns |B - I| in the centre (1/4, 1/4) of the vortex, where the flow only rotates: the largest component of the mean of four
+    cells."""
     s, n = run.snapshots[-1], run.cells[0]
     i = n // 4
     worst = 0
@@ -192,7 +193,7 @@ def marked_disc(run):
 
 
 def marked_strain(run):
-    """B_xy and B_xx of the marked disc in its middle, against [[1 + g^2, g], [g, 1]]: largest distance."""
+    """Returns the largest difference of B_xy and B_xx in the middle of the marked disc from [[1 + g^2, g], [g, 1]]."""
     s = run.snapshots[-1]
     g, j, i = 0.05 * s.time, run.cells[1] // 2, run.cells[0] // 2
     found = (s["left_cauchy_green_xx"][0, j, i] - 1 - g * g, s["left_cauchy_green_xy"][0, j, i] - g,

@@ -1,5 +1,6 @@
-"""V9: capsules of both laws and of other viscosities than the fluid's in shear flow from rest, by a boundary-integral method
-(boundary_integral.py, capsule_startups) with what walls and images add. docs/method.md, section 18."""
+"""V9: capsules of both laws, with viscosities other than that of the fluid, in shear flow from rest, against a boundary-integral method
+(boundary_integral.py, capsule_startups) with the contributions of walls and images. docs/method.md, section 18.
+"""
 import numpy
 
 from .bodies import fast_at

@@ -1,4 +1,4 @@
-"""L4, S11: surfaces of solids that lie across the cells."""
+"""L4, S11: surfaces of solids that are oblique to the grid."""
 import math
 
 import numpy
@@ -20,13 +20,14 @@ def layer_cells(n):
 
 
 def eta(n, at_x, at_y, moved=0.0):
-    """At (i + at_x) h_x, (j + at_y) h_y."""
+    """Returns the coordinate eta at (i + at_x) h_x, (j + at_y) h_y."""
     nx, ny = layer_cells(n)
     return ((numpy.arange(nx) + at_x) / nx + ((numpy.arange(ny) + at_y) / ny)[:, None] - 1 - moved) / math.sqrt(2)
 
 
 def fraction(n):
-    """Solid part of every cell: |x + y - 1| < 1/4 and its repetitions. What x + y = c cuts off is a difference of squares."""
+    """Returns the solid fraction of every cell for |x + y - 1| < 1/4 and its periodic images. The area below x + y = c is a difference
+    of squares."""
     nx, ny = layer_cells(n)
     hx, hy = 1 / nx, 1 / ny
     low = numpy.arange(nx) * hx + (numpy.arange(ny) * hy)[:, None]
@@ -49,7 +50,7 @@ def layer_start(mean):
 
 
 def exact_velocity(run, mean):
-    """On the faces x, of the last snapshot."""
+    """Returns the exact u on the faces normal to x, at the time of the last snapshot."""
     snapshot = run.snapshots[-1]
     return mean[0] + LAYERS.velocity(eta(run.cells[0], 0, 0.5, sum(mean) * snapshot.time), snapshot.time) / math.sqrt(2)
 
@@ -114,7 +115,7 @@ RADIUS, DRIVE, VISCOSITY = 0.4, 0.5, 0.1
 
 
 def flow_rate(run):
-    """Of Poiseuille's, in a box of section 1. The wall rests, so all of u counts."""
+    """Returns the flow rate relative to Poiseuille's, in a box of cross-section 1. The wall rests, so that all of u counts."""
     return run.summary["bulk_velocity"] / (math.pi * RADIUS**4 * DRIVE / (8 * VISCOSITY))
 
 

@@ -16,19 +16,19 @@ def strain(run):
 
 
 def turned(run):
-    """Angle by which the long axis has turned, in degrees, clockwise and counted on through turns."""
+    """Returns the angle by which the long axis has turned, in degrees, clockwise and accumulated over full turns."""
     inclination = numpy.unwrap(run.bodies.inclination[:, 0], period=180)
     return inclination[0] - inclination
 
 
 def gone_round(run):
-    """Angle by which the material has gone round."""
+    """Returns the angle by which the material has rotated."""
     t, speed = run.bodies.time, run.bodies.turning_rate[:, 0]
     return numpy.degrees(-numpy.append(0, numpy.cumsum(numpy.diff(t) * (speed[1:] + speed[:-1]) / 2)))
 
 
 def when(angle, of, what=strain):
-    """That quantity where an angle is reached; nan if it is not."""
+    """Returns the quantity `what` at the moment when an angle is reached; NaN if it is not reached."""
     def value(run):
         found = numpy.maximum.accumulate(of(run))
         return float(numpy.interp(angle, found, what(run))) if found[-1] >= angle else float("nan")
@@ -65,8 +65,8 @@ def long_run(n, _):
 
 
 def semi_axes(run):
-    """At the end, of the ellipsoid with the same second moments, without those of the cells: long and short one in the plane
-    of the shear, and that across it."""
+    """Returns, at the end, the semi-axes of the ellipsoid with the same second moments, corrected for those of the grid cells: the
+    long and the short one in the plane of the shear, and the one across it."""
     snapshot = run.snapshots[-1]
     phi = snapshot["solid_fraction"].astype(float)
     places = numpy.meshgrid(*snapshot.coordinates("solid_fraction")[::-1], indexing="ij")[::-1]
@@ -109,7 +109,7 @@ def drop(ratio):
 
 
 def of_drop(ratio, angle, column=None):
-    """Strain, or a column of ellipsoids.drop, where it has turned by that angle."""
+    """Returns the strain, or a column of ellipsoids.drop, at the moment when the ellipsoid has turned by this angle."""
     times, found = drop(ratio)
     return float(numpy.interp(angle, 90 - found[:, 1], times if column is None else found[:, column]))
 
@@ -136,7 +136,7 @@ def with_material(run):
 
 
 def red_cell(ratio, end):
-    """Viscosity 20, shear rate 6.6e-5, a box of 4, 3 and 3 radii, as in the file."""
+    """Options of a red cell with viscosity 20, shear rate 6.6e-5, in a box of 4, 3 and 3 radii, as in the file."""
     return lambda n, _: {**cells(n, (4, 3, 3)), "cell_viscosity": 20 * ratio, "time_end": end / 6.6e-5,
                          "series_interval": .1 / 6.6e-5}
 

@@ -9,12 +9,12 @@ from . import measures
 
 
 def percent(run):
-    """Hematocrit that was asked for, in %."""
+    """Returns the hematocrit that was asked for, in %."""
     return 100 * float(run.options.get("rbc_hematocrit", 0))
 
 
 def snapshots(runs, work, path):
-    """Fig. 7: the beginning and the end of every run."""
+    """Draws Fig. 7: the beginning and the end of every run."""
     pairs = {case: (run.snapshots[0], run.snapshots[-1]) for case, run in runs.items()}
     speed = plane_range([snapshot for pair in pairs.values() for snapshot in pair])
     figure, axes = plt.subplots(len(runs), 2, figsize=(WIDTH, 1.83 * len(runs) + 0.3), squeeze=False, layout="none",
@@ -38,7 +38,7 @@ def snapshots(runs, work, path):
 
 
 def platelets(runs, path):
-    """Fig. 8: distances of all platelets from the axis, without red cells and with the most."""
+    """Draws Fig. 8: distances of all platelets from the axis, without red cells and with the highest hematocrit."""
     chosen = [runs[case] for case in (list(runs)[0], list(runs)[-1])]
     figure, axes = panels(2, height=3.6, sharey=True)
     for axis, run in zip(axes, chosen):
@@ -51,13 +51,13 @@ def platelets(runs, path):
 
 
 def windows(time, width):
-    """Slices of rows, each about `width` of time long."""
+    """Returns slices of rows, each about `width` of time long."""
     edges = numpy.searchsorted(time, numpy.arange(time[0], time[-1] + width / 2, width))
     return [slice(a, b) for a, b in zip(edges[:-1], edges[1:]) if b > a]
 
 
 def radial_velocity(runs, path):
-    """Fig. 9: rms of the radial velocity of the platelets, in time and as a mean of the later part."""
+    """Draws Fig. 9: rms of the radial velocity of the platelets, over time and as a mean of the later part."""
     figure, (left, right) = panels(2, height=3.8, sharey=True, width_ratios=(1.5, 1))
     for n, run in enumerate(runs.values()):
         velocity, time = measures.radial(run)[1], run.bodies.time
@@ -75,7 +75,7 @@ def radial_velocity(runs, path):
 
 
 def stress(runs, path):
-    """Which part of the shear stress plasma and cells carry, at the end."""
+    """Draws the shares of the shear stress that plasma and cells carry at the end."""
     chosen = [runs[case] for case in (list(runs)[0], list(runs)[-1])]
     figure, axes = panels(2, height=3.8, sharey=True)
     for axis, run in zip(axes, chosen):
@@ -92,7 +92,7 @@ def stress(runs, path):
 
 
 def viscosity(runs, membranes, path):
-    """Relative apparent viscosity beside that of blood in glass tubes."""
+    """Draws the relative apparent viscosity beside that of blood in glass tubes."""
     plasma = measures.flow_rate(runs["plasma"])[0]
     diameter = 2 * measures.tube(runs["plasma"])[0]
     figure, (axis,) = panels(1, height=3.8)

@@ -1,15 +1,15 @@
-"""Numbers of a run of options/capillary_*.opts: a tube along x, its cells, its platelets."""
+"""Numbers of a run of options/capillary_*.opts: a tube along x with its red cells and platelets."""
 import numpy
 from eulastic.rounding import floor
 
 
 def tube(run):
-    """Radius of the lumen and where its axis is, (y, z)."""
+    """Returns the radius of the lumen and the position (y, z) of its axis."""
     return float(run.options["vessel_radius"]), [float(x) for x in run.options["vessel_centre"].split(",")[1:]]
 
 
 def force(run):
-    """Body force per volume along x."""
+    """Returns the body force per volume along x."""
     return float(run.options["fluid_density"]) * float(run.options["body_force"].split(",")[0])
 
 
@@ -24,8 +24,8 @@ def shear_modulus(run, species):
 # Shear stress
 
 def edge_stress(run, snapshot, d):
-    """Means over x of the shear stress sigma_xy (d = 1) or sigma_xz (d = 2), less the flux of momentum rho u v, on the
-    edges between two cells along d: the plasma's part and that of the elastic bodies, each (nz, ny) less one along d.
+    """Returns the shear stress sigma_xy (d = 1) or sigma_xz (d = 2) less the momentum flux rho u v, averaged over x, on the edges
+    between two cells along d: the part of the plasma and the part of the elastic bodies, each (nz, ny) with one entry fewer along d.
     sigma_xy = mu du/dy + sum of G avg4(phi) B_xy, as in the solver; the mean of dv/dx is 0 in a periodic box."""
     axis = 2 - d  # of arrays (nz, ny, nx)
     low, high = (numpy.s_[:-1], numpy.s_[1:])
@@ -48,7 +48,7 @@ def edge_stress(run, snapshot, d):
 
 
 def bilinear(values, y0, z0, h, y, z):
-    """values (nz, ny) at y0 + j h_y, z0 + k h_z, interpolated to the points y, z."""
+    """Interpolates values (nz, ny), located at y0 + j h_y, z0 + k h_z, to the points y, z."""
     s, t = (y - y0) / h[1], (z - z0) / h[2]
     j, k = (numpy.floor(q).astype(int) for q in (s, t))
     s, t = s - j, t - k
@@ -56,8 +56,8 @@ def bilinear(values, y0, z0, h, y, z):
 
 
 def shear_stress(run, snapshot, radii):
-    """What the fluid inside passes on through cylinders around the axis, force per area: (parts, radii), the parts of
-    viscosity (and momentum) and of elastic bodies. In a steady flow the two together are force x radius/2."""
+    """Returns the force per area that the fluid inside a cylinder around the axis exerts on it, (parts, radii): the part of viscosity
+    and momentum flux, and the part of elastic bodies. In a steady flow their sum is force x radius/2."""
     h, (y0, z0) = run.spacing, tube(run)[1]
     angle = (numpy.arange(720) + 0.5) * numpy.pi / 360
     parts = numpy.zeros((2, len(radii)))
@@ -73,13 +73,13 @@ def shear_stress(run, snapshot, radii):
 
 
 def wall_shear_stress(run):
-    """On the lumen's surface, from the last snapshot, in parts of force x diameter/4."""
+    """Returns the stress on the surface of the lumen in the last snapshot, relative to force x diameter/4."""
     radius = tube(run)[0]
     return float(shear_stress(run, run.snapshots[-1], [radius]).sum() / (force(run) * radius / 2))
 
 
 def held_by_walls(run):
-    """Force on the walls of the box, from the last snapshot, in parts of the body force on all that is in it."""
+    """Returns the force on the walls of the box in the last snapshot, relative to the body force on the whole content of the box."""
     total = sum(snapshot_wall[..., 0].sum() * run.spacing[0] * run.spacing[3 - d]
                 for d in (1, 2) for side in ("min", "max")
                 for snapshot_wall in [run.snapshots[-1][f"wall_shear_stress_{'xyz'[d]}{side}"].astype(float)])
@@ -87,8 +87,8 @@ def held_by_walls(run):
 
 
 def wall_displacements(run):
-    """Outward displacement of the lumen's surface since the first snapshot in every one of the others: means over
-    sixteenths of the circumference, cell by cell along the vessel, (snapshots, nx, 16)."""
+    """Returns the outward displacement of the surface of the lumen since the first snapshot, for every later snapshot, averaged over
+    sixteenths of the circumference, for each cell along the vessel: (snapshots, nx, 16)."""
     radius, (y0, z0) = tube(run)
     angle = numpy.arctan2(run.centres(2)[:, None] - z0, run.centres(1)[None, :] - y0)
     part = floor((angle + numpy.pi) * 8 / numpy.pi) % 16  # cells on a diagonal lie on a boundary
@@ -99,8 +99,8 @@ def wall_displacements(run):
 
 
 def wall_speed(run):
-    """Of the wall's full cells within two of the lumen: mean along x and root mean square, last snapshot, in parts of
-    the largest of plasma alone."""
+    """Returns the mean of u and its root mean square over the solid cells of the wall within two cells of the lumen, in the last
+    snapshot, relative to the largest speed of plasma alone."""
     radius, (y0, z0) = tube(run)
     distance = numpy.hypot(run.centres(1)[None, :] - y0, run.centres(2)[:, None] - z0)
     snapshot = run.snapshots[-1]
@@ -112,24 +112,24 @@ def wall_speed(run):
 # Flow
 
 def after(run, part):
-    """The times of the second part of the run: from `part` of it on."""
+    """Returns a mask of the times after the fraction `part` of the run."""
     return run.bodies.time >= part * run.bodies.time[-1]
 
 
 def flow_rate(run, part=1 / 3):
-    """Mean over the later part of the run, and its standard deviation in time."""
+    """Returns the mean flow rate after the fraction `part` of the run, and its standard deviation in time."""
     late = run.series.time >= part * run.series.time[-1]
     rate = run.series.vessel_flow_rate[late]
     return rate.mean(), rate.std()
 
 
 def poiseuille(run):
-    """Flow rate of plasma alone."""
+    """Returns the flow rate of plasma alone by the law of Poiseuille."""
     return numpy.pi * tube(run)[0] ** 4 * force(run) / (8 * float(run.options["fluid_viscosity"]))
 
 
 def plasma_rate(plasma, run):
-    """Flow rate of plasma as viscous as that of `run`, by the run of plasma alone."""
+    """Returns the flow rate of plasma with the viscosity of `run`, scaled from the run `plasma` of plasma alone."""
     return flow_rate(plasma)[0] * poiseuille(run) / poiseuille(plasma)
 
 
@@ -138,7 +138,8 @@ def of_species(run, name):
 
 
 def hematocrit(run, part=1 / 3):
-    """Of the tube, as seeded, and of what flows out of it: volume flux of red cells over flow rate, later part."""
+    """Returns the tube hematocrit at the start, and the discharge hematocrit: the volume flux of red cells over the flow rate, after
+    the fraction `part` of the run."""
     cells = of_species(run, "rbc")
     volume = run.bodies.volume[:, cells]
     flux = (volume * run.bodies.velocity[:, cells, 0])[after(run, part)].sum(axis=1).mean() / run.length[0]
@@ -146,7 +147,7 @@ def hematocrit(run, part=1 / 3):
 
 
 def pries(diameter, discharge):
-    """Relative apparent viscosity of blood in glass tubes of `diameter` um (Pries, Neuhaus, Gaehtgens, Am. J. Physiol.
+    """Returns the relative apparent viscosity of blood in glass tubes of `diameter` um (Pries, Neuhaus, Gaehtgens, Am. J. Physiol.
     263, H1770, 1992)."""
     at_45 = 220 * numpy.exp(-1.3 * diameter) + 3.2 - 2.44 * numpy.exp(-0.06 * diameter ** 0.645)
     narrow = 1 / (1 + 1e-11 * diameter ** 12)
@@ -155,19 +156,19 @@ def pries(diameter, discharge):
 
 
 def pries_bulk(discharge):
-    """The same in a tube so wide that the layer at its wall does not matter."""
+    """Returns the same viscosity for a tube so wide that the cell-free layer does not matter."""
     return pries(1000, discharge)
 
 
 def pries_ratio(diameter, discharge):
-    """Hematocrit of the tube over that of the discharge (Pries, Secomb, Gaehtgens, Gross, Circ. Res. 67, 826, 1990)."""
+    """Returns the tube hematocrit over the discharge hematocrit (Pries, Secomb, Gaehtgens, Gross, Circ. Res. 67, 826, 1990)."""
     return discharge + (1 - discharge) * (1 + 1.7 * numpy.exp(-0.415 * diameter) - 0.6 * numpy.exp(-0.011 * diameter))
 
 
 # Where the cells are, and what follows from it
 
 def profiles(run, snapshot):
-    """Means over rings around the axis, a cell of the grid wide: (radii, red cells' share, velocity)."""
+    """Returns means over rings around the axis with the width of a grid cell: (radii, volume fraction of red cells, velocity)."""
     (y0, z0), width = tube(run)[1], run.spacing[1]
     distance = numpy.hypot(run.centres(1)[None, :] - y0, run.centres(2)[:, None] - z0)
     rings = [floor(distance / width) == n for n in range(floor(tube(run)[0] / width))]
@@ -176,8 +177,8 @@ def profiles(run, snapshot):
 
 
 def local_viscosity(runs):
-    """a, b of the relative viscosity 1 + a H + b H^2 that the cells give where they are: force r/2 over the slope of
-    u at all rings of all snapshots with cells but the first, least squares weighted as they count in the flow rate."""
+    """Returns a, b of the relative viscosity 1 + a H + b H^2 at the local hematocrit H: a least-squares fit to the stress r/2 x force
+    over the slope of u, at all rings of all snapshots but the first, weighted as the rings contribute to the flow rate."""
     rows = []
     for run in runs:
         for snapshot in run.snapshots[1:]:
@@ -191,8 +192,8 @@ def local_viscosity(runs):
 
 
 def tube_flow(radius, share, viscosity):
-    """Apparent relative viscosity and discharge hematocrit of a tube with `share`(r) of cells, from the relative
-    viscosity `viscosity`(share) at every place."""
+    """Returns the apparent relative viscosity and the discharge hematocrit of a tube with the hematocrit `share`(r) and the local
+    relative viscosity `viscosity`(share)."""
     r = (numpy.arange(4000) + 0.5) / 4000 * radius
     h = share(r)
     u = numpy.cumsum((r / viscosity(h))[::-1])[::-1]
@@ -200,8 +201,8 @@ def tube_flow(radius, share, viscosity):
 
 
 def cell_free_layer(radius, hematocrit, viscosity, wanted):
-    """Width of the layer without cells at the wall of a tube, its cells evenly in what is left, that has the apparent
-    viscosity `wanted`(discharge hematocrit)."""
+    """Returns the width of the cell-free layer at the wall with which a tube, whose cells are distributed evenly in the rest of it,
+    has the apparent viscosity `wanted`(discharge hematocrit)."""
     def too_viscous(width):
         core = radius - width
         here, discharge = tube_flow(radius, lambda r: numpy.where(r < core, hematocrit * (radius / core) ** 2, 0), viscosity)
@@ -216,7 +217,7 @@ def cell_free_layer(radius, hematocrit, viscosity, wanted):
 # Platelets
 
 def radial(run):
-    """Distance from the axis and radial velocity of every platelet at all times, (nt, n) each."""
+    """Returns the distance from the axis and the radial velocity of every platelet at all times, (nt, n) each."""
     who = of_species(run, "platelet")
     place = run.bodies.centroid[:, who, 1:] - tube(run)[1]
     velocity = run.bodies.velocity[:, who, 1:]
@@ -225,16 +226,16 @@ def radial(run):
 
 
 def radial_rms(run, part=1 / 3):
-    """Root mean square of the radial velocity over platelets and later times, and the standard error of it that the
-    platelets' differences suggest."""
+    """Returns the root mean square of the radial velocity over all platelets and later times, and its standard error, estimated from
+    the differences between platelets."""
     square = (radial(run)[1][after(run, part)] ** 2).mean(axis=0)  # of each
     value = numpy.sqrt(square.mean())
     return value, square.std(ddof=1) / numpy.sqrt(len(square)) / (2 * value)
 
 
 def overlap(run):
-    """What cells of the grid hold beyond their volume, bodies of all species together, in parts of all red cells; the
-    largest of all snapshots."""
+    """Returns the volume by which all bodies together exceed the volume of the cells that they fill, relative to the volume of all red
+    cells: the largest value of all snapshots."""
     largest = 0
     for snapshot in run.snapshots:
         fraction = {name: snapshot["solid_fraction_" + name] for name in run.options["species"].split(",")}

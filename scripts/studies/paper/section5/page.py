@@ -1,4 +1,4 @@
-"""docs/capillary.md: checks, a table, the pictures."""
+"""Writes docs/capillary.md: checks, a table and pictures."""
 import math
 import os
 import pathlib
@@ -144,14 +144,14 @@ def percent(value, digits=2):
 
 
 def estimate(case, line, value):
-    """What -check_only says about an options file."""
+    """Returns the number that -check_only prints in a line about an options file."""
     program = os.environ.get("EULASTIC", ROOT / "build/release/eulastic")
     report = subprocess.run([program, case, "-check_only"], check=True, capture_output=True, text=True).stdout
     return re.search(rf"^{line}.*?: ({value})", report, re.MULTILINE)[1]
 
 
 def checks(runs):
-    """(name, {case: text}, what is wanted, verdict or None) of every check that the runs allow."""
+    """Yields (name, {case: text}, expected value, verdict or None) of every check for which the runs exist."""
     wall = {case: measures.wall_shear_stress(run) for case, run in runs.items()}
     yield ("wall shear stress / (force x diameter/4)", {c: f"{w:.4f}" for c, w in wall.items()}, "1, within 1 %",
            all(abs(w - 1) < 0.01 for w in wall.values()))
@@ -188,12 +188,12 @@ def checks(runs):
 
 
 def verdict(runs, holds):
-    """None as long as there is nothing to compare."""
+    """Returns None as long as there is nothing to compare."""
     return bool(holds()) if "plasma" in runs and len(runs) > 1 else None
 
 
 def cells_off(run):
-    """By how many cells the number of red cells differs from the hematocrit that was asked for."""
+    """Returns the number of red cells less the number that the hematocrit asks for."""
     wanted = float(run.options["rbc_hematocrit"]) * measures.area(run) * run.length[0]
     count = len(measures.of_species(run, "rbc"))
     volume = run.bodies.volume[0, measures.of_species(run, "rbc")].sum() / count
@@ -249,7 +249,7 @@ def layer_rows(runs, membranes):
 
 
 def grid_effect(runs, coarse):
-    """The apparent viscosity at 10 % on two grids, over the time that all have."""
+    """Compares the apparent viscosity at 10 % on two grids, over the time that all runs cover."""
     if len(coarse) < 2 or "h10" not in runs:
         return ""
     fine = {"plasma": runs["plasma"], "h10": runs["h10"]}
@@ -289,7 +289,7 @@ def tube_rows(tubes):
 
 
 def trend(runs):
-    """What Fig. 9 says, in words."""
+    """Describes in words what Fig. 9 shows."""
     if "plasma" not in runs or len(runs) < 2:
         return "Not all runs are there yet."
     rms = {case: [1e3 * v for v in measures.radial_rms(run)] for case, run in runs.items()}
@@ -306,7 +306,7 @@ def trend(runs):
 
 
 def other_options(run):
-    """How the runs differ from the files of options/, in words."""
+    """Describes in words how the runs differ from the files of options/."""
     file, changed = read_options(CASE), []
     for name in ("grid_cells", "grid_length", "time_end"):
         if [float(x) for x in file[name].split(",")] != [float(x) for x in run.options[name].split(",")]:
@@ -315,7 +315,7 @@ def other_options(run):
 
 
 def write(runs, membranes, tubes, coarse, missing, path):
-    """Returns whether no check failed."""
+    """Writes the page. Returns whether no check failed."""
     run = list(runs.values())[0]
     rows = list(checks(runs))
     radius = measures.tube(run)[0]
