@@ -19,7 +19,7 @@ PAGE = """# Red cells and platelets in a capillary
 
 Written by `scripts/studies/paper/paper_section5`; do not edit. This page repeats section 5 of Sugiyama et al. (HPCS 2013)
 for readers who want to see what the program computes for blood. Red cells and platelets flow through an elastic vessel at hematocrits of 0, 5, 10,
-15 and 20 %; the vessel is small enough for two cores, while the paper used the K computer:
+15 and 20 %. The vessel is small enough for two cores, while the paper used the K computer:
 
     scripts/studies/paper/paper_section5                # all runs: about an hour; the same command continues after an interruption
     scripts/studies/paper/paper_section5 --finished     # no runs: writes the page from the finished ones
@@ -28,16 +28,16 @@ for readers who want to see what the program computes for blood. Red cells and p
 The vessel, {diameter:g} µm wide and {length:g} µm long, is an elastic wall (tube) in a box of {cells} cells of
 {spacing:.3g} µm, periodic along x. A body force of {force:g} drives plasma of viscosity {viscosity:g} from rest. Lengths are in µm, times in µs, and the
 density is 1; the runs end at {end:g}. Red cells are biconcave solids, 8 µm wide. The {platelets} platelets are ellipsoids of 2 x 2 x 1.6 µm, which start from
-the same positions at all hematocrits. The shear stress at the wall is {capillary:.2g} of the cells' shear modulus. The paper's own case, a vessel
-of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets, is options/capillary_paper.opts. `-check_only` estimates
-{memory} of memory and about {time} of one core for it.
+the same positions at all hematocrits. The wall shear stress is {capillary:.2g} of the cells' shear modulus. The paper's own case is options/capillary_paper.opts, a vessel
+of 104 µm on 3072 x 640 x 640 cells with 8549 red cells and 2000 platelets. For this case `-check_only` estimates {memory} of memory
+and a run time of about {time} on one core.
 
 {unfinished}## Figure 7: the cells
 
 ![Snapshots at five hematocrits](images/section5_snapshots.png)
 
-*Cells at the beginning and at the end. The far half of the lumen is drawn, and behind it the velocity along x in the middle plane. Cells that cross a
-periodic end are cut there and drawn at both ends. With 13 grid cells per diameter some red cells appear as rings ([dimple.md](dimple.md)).*
+*Cells at the beginning and at the end. The pictures show the far half of the lumen, and behind it the velocity along x in the middle plane. Cells that
+cross a periodic boundary are cut there and drawn at both ends. With 13 grid cells per diameter some red cells appear as rings ([dimple.md](dimple.md)).*
 
 ## Figure 8: positions of the platelets
 
@@ -49,8 +49,8 @@ periodic end are cut there and drawn at both ends. With 13 grid cells per diamet
 
 ![Radial velocity of platelets](images/section5_radial_velocity.png)
 
-*Root mean square of the radial velocity over the platelets, in twentieths of the run and over its last two thirds. The bars are
-standard errors from the differences between platelets.*
+*Root mean square of the radial velocity over the platelets, averaged over each twentieth of the run and over its last two thirds. The bars
+are standard errors, computed from the differences between platelets.*
 
 {trend}
 
@@ -62,23 +62,23 @@ standard errors from the differences between platelets.*
 
 Rows with the verdict "reported" are not judged. Means are over the last two thirds of a run; stresses are those of the last snapshot.
 
-**The wall shear stress** is that at the surface of the lumen, which does not coincide with faces of the grid. It is computed from the fields: the mean over
-a cylinder of radius r around the axis of sigma_xr = mu du/dr + sum of G phi B_xr over bodies, less the flux of momentum, from the staggered
-velocities and the B of every species in the snapshot. In a steady flow this is force x r/2 at every r, independent of the bodies; at the wall it is force x
-diameter/4. The check shows that the flow is steady, that the stresses in the momentum equation agree with the fields in the snapshot, and that no force is lost
+**The wall shear stress** is that at the surface of the lumen, which does not coincide with faces of the grid. It is computed from the staggered velocities
+and the B of every species in the snapshot, as the mean of the stress sigma_xr over a cylinder of radius r around the axis, less the flux of momentum;
+sigma_xr is mu du/dr plus the sum of G phi B_xr over the species. In a steady flow this mean is force x r/2 at every r, independent of the bodies; at the wall
+it is force x diameter/4. The check shows that the flow is steady, that the stresses in the momentum equation agree with the fields in the snapshot, and that no force is lost
 at the surface, where cut cells contain viscous and elastic stress. The force on the walls of the box balances the body force on
 everything in the box, including the vessel.
 
-**The wall** is an elastic solid that is initially without stress. It is held by the boundaries of the box that it reaches; there is no spring that pulls it
-back. The flow shears it by {shear:.2f}, which moves its surface along x by about {elastic:.2f} µm where it is thinnest. Passing cells press on it: the
-outward displacement of its surface (averaged over {patch:.1f} µm of the circumference and a cell of the grid along x) is present at the first snapshot already;
-its mean is zero, since volume is conserved. The displacement must not grow by itself ([method.md](method.md), section 7), so that the rms of the last
-snapshot is compared with that of the first. With cells, the wall also creeps slowly along x: at its mean velocity within two cells of the lumen, by
-{creep:.3f} µm in 1000 µs at most.
+**The wall** is an elastic solid that is initially without stress. It is held only by the boundaries of the box that it reaches; no spring pulls it
+back. The flow shears the wall by {shear:.2f}, which moves its surface along x by about {elastic:.2f} µm where it is thinnest. Passing cells press on the wall,
+so that its surface has an outward displacement at the first snapshot already (averaged over {patch:.1f} µm of the circumference and a grid cell along x).
+The mean of this displacement is zero, since volume is conserved. The displacement must not grow by itself ([method.md](method.md), section 7). Therefore
+its rms at the last snapshot is compared with that at the first. With cells, the wall also creeps slowly along x: its mean velocity within two grid cells of
+the lumen corresponds to {creep:.3f} µm in 1000 µs at most.
 
 ![Shares of the shear stress](images/section5_stress.png)
 
-*Viscous and elastic part of the shear stress at the distance r from the axis, at the end of the run.*
+*Viscous and elastic parts of the shear stress at the distance r from the axis, at the end of the run.*
 {tube}{flow}"""
 
 FLOW = """
@@ -87,17 +87,17 @@ FLOW = """
 ![Relative apparent viscosity](images/section5_viscosity.png)
 
 *Relative apparent viscosity: the flow rate of plasma over that of blood at the same force. The dashed line is the fit of Pries,
-Neuhaus and Gaehtgens (Am. J. Physiol. 263, H1770, 1992) to blood in glass tubes of this diameter. The discharge
-hematocrit is the share of red cells in the volume that leaves the tube.*
+Neuhaus and Gaehtgens (Am. J. Physiol. 263, H1770, 1992) to data for blood in glass tubes, evaluated at this diameter. The
+discharge hematocrit is the volume fraction of red cells in the blood that leaves the tube.*
 
 | hematocrit | red cells | requested | placed | discharge | flow rate, µm³/ms | apparent viscosity | Pries et al. | gap |
 |---|---|---|---|---|---|---|---|---|
 {flow}
 
-In the last row red cells are membranes around a fluid five times as viscous as plasma, from the same initial positions
+In the last row the red cells are membranes around a fluid five times as viscous as plasma, with the same initial positions
 (options/capillary_red_cells_h20.opts); in all other rows they are solids as viscous as plasma.
 
-The gap in the last column is the difference from Pries et al. The next table shows measures that help to explain it:
+The gap in the last column is the relative difference of the apparent viscosity from that of Pries et al. The next table shows measures that help to explain it:
 
 | hematocrit | tube / discharge hematocrit | the same, Pries et al. 1990 | apparent viscosity in sixths of the run | from the profile | blood in the same positions | layer, µm | layer for Pries et al., µm |
 |---|---|---|---|---|---|---|---|
@@ -105,16 +105,16 @@ The gap in the last column is the difference from Pries et al. The next table sh
 
 - *Apparent viscosity in sixths of the run*: its mean over each sixth, from the second one on.
 - *From the profile*: the apparent viscosity of a tube with the final distribution of cells and the local viscosity {local}, where H is
-  the local share of cells. The local viscosity is a fit to force x r/2 over the slope of u at all radii and later snapshots of all runs with such cells.
+  the local volume fraction of cells. The local viscosity is a fit to the ratio of force x r/2 to the slope of u, at all radii and later snapshots of all runs with such cells.
 - *Blood in the same positions*: the same, but with the local viscosity that Pries et al. give for wide tubes.
-- *Layer*: the width of a cell-free layer at the wall with which an even distribution of the cells in the remaining lumen would have the apparent viscosity of the run. The last
-  column is the same for the value of Pries et al. at the resulting discharge hematocrit. Such a layer is an equivalent, not a feature of the profile.
+- *Layer*: the width of an equivalent cell-free layer at the wall. If the cells were distributed evenly in the rest of the lumen, such a layer would give the apparent viscosity
+  of the run. The last column is the same for the value of Pries et al. at the resulting discharge hematocrit. The profile itself need not have such a layer.
 
 Two causes of the gap can be separated:
 
 1. **Positions of the cells.** The cells were placed in the whole lumen and have not gathered around the axis as in a long tube: the tube hematocrit is too close to the
-   discharge hematocrit, and the layer is too thin. The layer of the last column would close the gap. {strain:.0f} units of shear strain at the wall are too few for such a migration; the
-   sixths of the run show its progress.
+   discharge hematocrit, and the layer is too thin. A layer as wide as in the last column would close the gap. The run has only {strain:.0f} units of shear strain at the wall, which
+   is too short for such a migration; the sixths of the run show its progress.
 2. **Properties of the cells.** In the same positions real blood would flow more easily. A solid cell is a neo-Hookean body as viscous as plasma, which cannot tank-tread. Only a few grid
    cells span the thickness of a red cell ([dimple.md](dimple.md)), and less than one spans the plasma between two of them.
 
@@ -125,17 +125,17 @@ The period, two diameters, has not been varied.
 TUBE = """
 ## Plasma alone: Poiseuille's flow in the tube
 
-These runs have the same vessel and force without cells, four grid cells long, until the flow is steady; the surface cuts the grid in all ways.
-tests/convergence/tube_test.cpp asserts the order.
+These runs have the same vessel and force without red cells and platelets. The vessel is four grid cells long, and its surface cuts the grid at all angles. The
+runs end when the flow is steady. tests/convergence/tube_test.cpp asserts the order.
 
 | cells across the lumen | rms error of u | order | error of flow rate | rms velocity of the wall / largest of plasma |
 |---|---|---|---|---|
 {rows}
 
-The error of u is the root mean square over the lumen, relative to the largest u. The error of the flow rate is relative. The order is that from half as many cells; it varies
-because the surface cuts each grid differently. From 40 cells on, the wall is at least four grid cells thick; with two or three the errors are larger than the order suggests. The last
-line has `-vessel_anchored false`, which treats the wall like a free body ([method.md](method.md), section 7): the wall does not move either, but its surface is of first
-order, so that the lumen acts as if it were narrower.
+The error of u is the root mean square over the lumen, relative to the largest u. The error of the flow rate is relative, too. The order is computed from the error with half as many
+cells; it varies because the surface cuts each grid differently. From 40 cells on, the wall is at least four grid cells thick; where it is only two or three cells thick, the errors are
+larger than the order suggests. The last line has `-vessel_anchored false`, which treats the wall like a free body ([method.md](method.md), section 7): the wall does not move either,
+but its surface is of first order, so that the lumen acts as if it were narrower.
 """
 
 
@@ -291,15 +291,15 @@ def tube_rows(tubes):
 def trend(runs):
     """Describes in words what Fig. 9 shows."""
     if "plasma" not in runs or len(runs) < 2:
-        return "Not all runs are there yet."
+        return "Some runs have not been made yet."
     rms = {case: [1e3 * v for v in measures.radial_rms(run)] for case, run in runs.items()}
     cells = list(rms)[1:]
     value = [rms[c][0] for c in cells]
     spread, error = value[-1] - value[0], math.hypot(rms[cells[0]][1], rms[cells[-1]][1])
     words = "increases with the hematocrit" if spread > 2 * error and value == sorted(value) else \
         "shows no trend with the hematocrit beyond its standard error"
-    return (f"In plasma alone platelets keep their distance from the axis, with an rms of {rms['plasma'][0]:.3f} µm/ms. Red cells push them about "
-            f"{value[0] / rms['plasma'][0]:.0f} times\nas fast already at the lowest hematocrit. Among the runs with red cells the rms {words}: "
+    return (f"In plasma alone platelets keep their distance from the axis: the rms is {rms['plasma'][0]:.3f} µm/ms. With red cells they move about "
+            f"{value[0] / rms['plasma'][0]:.0f} times\nas fast, already at the lowest hematocrit. Among the runs with red cells the rms {words}: "
             + ", ".join(f"{rms[c][0]:.2f} ± {rms[c][1]:.2f}" for c in cells)
             + " µm/ms\nfor " + ", ".join(f"{100 * float(runs[c].options['rbc_hematocrit']):.0f}" for c in cells) + " %. So the motion "
             "of the red cells makes the platelets fluctuate, which is the result of the paper.")
@@ -311,7 +311,7 @@ def other_options(run):
     for name in ("grid_cells", "grid_length", "time_end"):
         if [float(x) for x in file[name].split(",")] != [float(x) for x in run.options[name].split(",")]:
             changed.append(f"-{name} {run.options[name]}")
-    return f"**The runs of this page were made with `{' '.join(changed)}`, other than in options/.**\n\n" if changed else ""
+    return f"**The runs of this page were made with `{' '.join(changed)}`, in contrast to options/.**\n\n" if changed else ""
 
 
 def write(runs, membranes, tubes, coarse, missing, path):
