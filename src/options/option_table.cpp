@@ -20,7 +20,7 @@ void add_grid(Rows &rows, Config &config) {
   rows.may_change = true;
   for (int d = 0; d < 3; ++d) {
     rows.integer(std::string("da_processors_") + "xyz"[d], config.grid.processors[d], {0, false},
-                 std::string("number of MPI ranks along ") + "xyz"[d]);
+                 std::string("number of MPI ranks along ") + "xyz"[d] + "; auto: chosen by the program");
     rows.zero_is("auto");
   }
   rows.integer("threads", config.threads, {1, false, 1024},
