@@ -118,10 +118,10 @@ public:
   /// the first one is extended to. Owned points; phases without labels get none. Collective.
   PetscErrorCode show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const;
   std::size_t bytes() const;
+  /// Doubles that a body takes whose shape extends over so many cells: phi and B with the ghosts around its box, force,
+  /// and what look() keeps: a copy and a velocity, without a surface in fewer layers.
+  static double values(const Material &material, int dimension, const Real3 &cells, int ghosts);
 
-  /// Layers of points around a body, on both sides together, that look() keeps where there is no surface: those that B
-  /// is extended to, faces behind them, and a ghost.
-  static constexpr int seen_around = 2 * ExteriorLayers::layers + 1 + 2;
   /// Cells around a body that its box has when it is made.
   static int margin(const Material &material) { return needed(material) + 2; }
   /// How far spans of rows reach beyond phi != 0 of a body, in cells: layers around it and what moves in a step.

@@ -9,6 +9,21 @@
 
 namespace eulastic {
 
+double FreeBodies::values(const Material &material, int dimension, const Real3 &cells, int ghosts) {
+  const int tensor = material.carries_tensor() ? static_cast<int>(tensor_components(dimension).size()) : 0;
+  // Layers of points around a body without a surface, on both sides together: those that B is extended to, faces behind
+  // them, and a ghost.
+  constexpr int seen_around = 2 * ExteriorLayers::layers + 1 + 2;
+  double box = 1, around = 1, kept = 1;
+  for (int d = 0; d < dimension; ++d) {
+    const double own = cells[d] + 2 * margin(material), all = own + 2 * ghosts;
+    box *= own;
+    around *= all;
+    kept *= material.has_surface() ? all : cells[d] + seen_around;
+  }
+  return around * (1 + tensor) + kept * (1 + tensor + dimension) + box * dimension;
+}
+
 // What has a surface is measured in the box of the body. Of other bodies a copy is moved in scratch memory, and its
 // cells are kept.
 PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field &velocity, BodyInBox *seen) {

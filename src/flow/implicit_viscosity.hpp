@@ -13,6 +13,8 @@ namespace eulastic {
 /// The viscous part of a step as a whole, in place of the stages of super_time_step().
 class ImplicitViscosity {
 public:
+  /// Memory in fields of the grid.
+  static double fields(int dimension) { return 5 * dimension + 3 + Multigrid::fields(dimension); }
   /// Builds the V-cycles for increments of the velocity, which are 0 on closed boundaries, with the geometric mean of
   /// the `least` and the `largest` kinematic viscosity. `tolerance`: of the residual of each system, relative to its
   /// right-hand side; at most .1 sqrt(least/largest), because with large contrasts the residual hides errors where the

@@ -55,6 +55,17 @@ int Projection::work_fields(const Method &method, bool open, bool rigid) {
          (rigid && !method.is_single_acm_step() ? ObstacleSolver::work_fields : 0);
 }
 
+// With rigid bodies their solver remembers the increments, not that which preconditions it.
+double Projection::fields(const Method &method, int dimension, bool rigid) {
+  if (method.pressure == PressureKind::acm && method.is_single_acm_step()) return 0;
+  const double remembered = rigid ? method.acm_memory : 0;
+  if (method.pressure == PressureKind::smac) return SmacSolver::fields + remembered;
+  if (method.pressure == PressureKind::ksp) return KspSolver::fields + remembered;
+  return AcmIterativeSolver::fields({method.acm_sweeps_max, rigid ? 0 : method.acm_memory, method.acm_coarse},
+                                    dimension) +
+         remembered;
+}
+
 PetscErrorCode Projection::create(int memory) {
   const SolverSpec &spec = flow_.spec;
   PetscFunctionBeginUser;

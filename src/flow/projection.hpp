@@ -25,6 +25,8 @@ public:
   /// Number of fields of the work space that are leased at the same time. `open`: there is an open boundary; `rigid`:
   /// there are rigid bodies.
   static int work_fields(const Method &method, bool open, bool rigid);
+  /// Memory of the pressure solver beside the work space, in fields of the grid.
+  static double fields(const Method &method, int dimension, bool rigid);
 
   explicit Projection(Flow *flow) : flow_(*flow) {}
   /// Creates the pressure solver of the method, which stores `memory` increments of earlier steps. Collective.

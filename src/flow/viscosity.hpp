@@ -40,6 +40,10 @@ struct LocalViscosity {
   ActiveSegments beside;    ///< points whose faces feel the stress of these cells
   Field stress;             ///< symmetric, at centres; work space, 0 outside `stressed`
 
+  /// Components of both fields.
+  static int components(int dimension) {
+    return viscosity_fields(dimension) + static_cast<int>(tensor_components(dimension).size());
+  }
   LocalViscosity() = default;
   explicit LocalViscosity(const Box &box);
   std::size_t bytes() const { return fields.bytes() + stress.bytes(); }

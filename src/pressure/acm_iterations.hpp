@@ -25,6 +25,10 @@ struct AcmIterativeOptions {
 class AcmIterativeSolver final : public PressureSolver {
 public:
   static constexpr int work_fields = 4;  ///< components of the work space during a solve
+  /// Memory beside the work space, in fields of the grid.
+  static double fields(const AcmIterativeOptions &options, int dimension) {
+    return options.memory + (options.multigrid ? Multigrid::fields(dimension) + (options.memory == 0) : 0);
+  }
   /// Creates the solver. `domain`, `exchange` and `work` must outlive it. Collective.
   PetscErrorCode create(const Domain &domain, GhostExchange &exchange, const AcmIterativeOptions &options,
                         WorkSpace &work);

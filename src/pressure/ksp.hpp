@@ -17,6 +17,8 @@ using KspHandle = Handle<KSP, KSPDestroy>;
 
 class KspSolver final : public PressureSolver {
 public:
+  /// Memory in fields of the grid: matrices, levels and vectors, as measured with the default.
+  static constexpr int fields = 55;
   /// Creates and sets up the solver, so that PETSc knows afterwards which options have been read. `domain` and
   /// `exchange` must outlive it. Fails with PETSC_ERR_USER_INPUT and PETSc's message if the value of an option is
   /// invalid. Collective.

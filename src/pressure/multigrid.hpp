@@ -19,6 +19,8 @@ namespace eulastic {
 class Multigrid {
 public:
   static constexpr int halo = 2;  ///< ghost layers of the right-hand side that a cycle reads
+  /// Memory of all levels, in fields of the grid, about.
+  static constexpr double fields(int dimension) { return dimension == 2 ? 1 : 0.4; }
 
   /// Arguments of apply()'s callback.
   using RowsDone = std::function<void(ConstView, int, int, int, int)>;

@@ -14,6 +14,7 @@ namespace eulastic {
 
 class SmacSolver final : public PressureSolver {
 public:
+  static constexpr int fields = 2;  ///< memory, in fields of the grid: two copies to transform
   /// Whether this build has FFTW.
   static bool available();
   /// Creates the solver; `domain` and `exchange` must outlive it. Fails without FFTW. Collective.

@@ -4,9 +4,9 @@
 #include "bodies/shapes.hpp"
 #include "boxes/free_bodies.hpp"
 #include "field/open_boundaries.hpp"
+#include "flow/viscosity.hpp"
 #include "grid/domain.hpp"
 #include "io/fail_together.hpp"
-#include "solver/scheme.hpp"
 #include "solver/solver.hpp"
 
 #include <unistd.h>
@@ -18,30 +18,23 @@ namespace {
 
 int tensor_fields(const Config &config) { return static_cast<int>(tensor_components(config.grid.dimension()).size()); }
 
-/// Doubles of all bodies in boxes: phi and B with the ghosts around them, force, and for outputs a copy and a velocity,
-/// of bodies without a surface that exerts forces in the cells alone that FreeBodies::look() keeps.
+/// Doubles of all bodies in boxes, which may be turned in any direction.
 double boxed_values(const Config &config) {
   const int dimension = config.grid.dimension();
   double sum = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     if (!config.lies_in_boxes(s)) continue;
-    const Material material = config.species[s].material();
-    const int tensor = material.carries_tensor() ? tensor_fields(config) : 0;
     const Surface surface(config.species[s], dimension);
-    double reach = 0, cells = 1, around = 1, kept = 1;
+    double reach = 0;
     for (int d = 0; d < dimension; ++d) {
       Real3 along{};
       along[d] = 1;
       reach = std::max(reach, surface.support(along));
     }
-    for (int d = 0; d < dimension; ++d) {
-      const double bare = 2 * reach * config.grid.cells[d] / config.grid.length[d];
-      const double own = bare + 2 * FreeBodies::margin(material);
-      cells *= own;
-      around *= own + 2 * config.grid.ghosts;
-      kept *= material.has_surface() ? own + 2 * config.grid.ghosts : bare + FreeBodies::seen_around;
-    }
-    sum += config.places[s].count * (around * (1 + tensor) + kept * (1 + tensor + dimension) + cells * dimension);
+    Real3 cells{};
+    for (int d = 0; d < dimension; ++d) cells[d] = 2 * reach * config.grid.cells[d] / config.grid.length[d];
+    sum +=
+        config.places[s].count * FreeBodies::values(config.species[s].material(), dimension, cells, config.grid.ghosts);
   }
   return sum;
 }
@@ -57,55 +50,34 @@ double species_fields(const Config &config, std::size_t which) {
   return fields * (config.method.staggered() ? 2 : 1);
 }
 
-/// Doubles per cell of the pressure solver, without the work space. `rigid`: bodies give increments of their own, in
-/// the place of those of the iterations, which then need scratch.
-double pressure_fields(const Method &method, int dimension, bool rigid) {
-  if (method.pressure == PressureKind::smac) return 2 + rigid * method.acm_memory;  // two copies to transform
-  // Matrices, levels and vectors, as measured with CG and PCMG.
-  if (method.pressure == PressureKind::ksp) return 55 + rigid * method.acm_memory;
-  if (method.is_single_acm_step()) return 0;
-  if (!method.acm_coarse) return method.acm_memory;
-  return method.acm_memory + (dimension == 2 ? 1 : 0.4) + (method.acm_memory == 0 || rigid);  // coarse grids, scratch
-}
-
-/// Doubles per cell, as Solver allocates them: velocity, predictor, pressure; work space; what the parts of the method
-/// add; the species.
+/// Doubles per cell of all fields.
 double fields(const Config &config) {
-  const Method &method = config.method;
   const int dimension = config.grid.dimension();
-  Solver::Contents scene{has_open_boundary(config.sides), !config.species.empty()};
-  bool travels = false, carries_tensor = false;
+  SolverSpec spec;
+  static_cast<Method &>(spec) = config.method;
+  spec.fluid = config.fluid;
+  Solver::Contents scene;
+  scene.open = has_open_boundary(config.sides);
+  scene.bodies = !config.species.empty();
   ViscosityContrast contrast(config.fluid);
-  double species = 0;
+  double sum = 0;
   for (std::size_t s = 0; s < config.species.size(); ++s) {
-    const SpeciesSpec &spec = config.species[s];
+    const SpeciesSpec &species = config.species[s];
     const bool on_grid = !config.lies_in_boxes(s);
-    scene.surface_tension |= on_grid && spec.surface_tension > 0;
-    scene.membranes |= on_grid && spec.is_membrane();
-    scene.rigid |= spec.law == Law::rigid;
-    travels |= spec.travels(dimension);
-    carries_tensor |= spec.material().carries_tensor();
-    contrast.add(spec.material(), 0);
-    species += species_fields(config, s);
+    scene.surface_tension |= on_grid && species.surface_tension > 0;
+    scene.membranes |= on_grid && species.is_membrane();
+    scene.rigid |= species.law == Law::rigid;
+    scene.travel |= species.travels(dimension);
+    scene.elastic |= species.material().carries_tensor();
+    contrast.add(species.material(), 0);
+    sum += species_fields(config, s);
   }
-  double sum = 2 * dimension + 1 + Solver::work_fields(method, dimension, scene) + species +
-               pressure_fields(method, dimension, scene.rigid);
-  if (travels) sum += dimension;  // which faces are inside; twice that beside bodies of a file
+  // One B at the time of the output lies in fields that are idle between steps.
+  if (scene.elastic && config.method.linear_force()) sum -= tensor_fields(config);
   for (const auto &pair : config.sides)
     for (const BoundaryCondition &side : pair)
-      sum += side.kind == BoundaryKind::pressure && side.load.exists();  // its response
-  if (method.staggered() && config.fluid.inertia) sum += dimension;      // of the step before
-  if (config.species.empty()) return sum;
-  const int tensor = carries_tensor ? tensor_fields(config) : 0;
-  if (method.linear_force()) sum += dimension - tensor;  // one B at the output lies in idle velocities
-  if (!method.staggered()) sum += tensor;
-  if (scene.membranes) sum += dimension;  // their force
-  if (method.interface == InterfaceScheme::weno5) sum += 1;
-  if (contrast.exists()) sum += viscosity_fields(dimension) + tensor_fields(config);
-  if (method.implicit_viscosity(contrast.exists(), scene.rigid))  // ImplicitViscosity
-    sum += 5 * dimension + 3 + (dimension == 2 ? 1 : 0.4);
-  if (Scheme::extrapolates_pressure(method, contrast, travels)) sum += 1;  // pressure before
-  return sum;
+      scene.loaded_outlets += side.kind == BoundaryKind::pressure && side.load.exists();
+  return sum + Solver::fields(spec, dimension, scene, contrast);
 }
 
 double ghosted_cells(const Config &config, const Int3 &parts) {

@@ -53,6 +53,11 @@ int GridBodies::work_fields(const Method &method, int dimension) {
   return std::max(tensor, method.interface == InterfaceScheme::plic ? InterfaceTransport::work_fields : 0);
 }
 
+double GridBodies::fields(const Method &method, int dimension, bool elastic) {
+  const bool tensor = elastic && !method.staggered(), fraction = method.interface == InterfaceScheme::weno5;
+  return fraction + (tensor ? static_cast<int>(tensor_components(dimension).size()) : 0);
+}
+
 std::size_t GridBodies::bytes() const {
   std::size_t sum = flow_.next_fraction.bytes() + flow_.next_tensor.bytes();
   for (const Phase &phase : flow_.now.phases) sum += phase.bytes();

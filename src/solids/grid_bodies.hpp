@@ -18,6 +18,9 @@ public:
   explicit GridBodies(Flow *flow) : flow_(*flow), solids_(flow->spec.exterior == SolidExterior::extrapolate) {}
   /// Number of work-space fields that the transport needs.
   static int work_fields(const Method &method, int dimension);
+  /// Memory beside the work space and the phases, in fields of the grid: targets of transports that cannot work in
+  /// place. `elastic`: some species carries B.
+  static double fields(const Method &method, int dimension, bool elastic);
   std::size_t bytes() const override;
   PetscErrorCode carry(CarriedState *state) override;
   PetscErrorCode start() override;

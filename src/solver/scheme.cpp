@@ -2,6 +2,7 @@
 
 #include "bodies/labels.hpp"
 #include "field/open_boundaries.hpp"
+#include "flow/implicit_viscosity.hpp"
 #include "flow/projection.hpp"
 #include "flow/viscous_stress.hpp"
 #include "rigid/rigid_surfaces.hpp"
@@ -12,6 +13,16 @@ namespace eulastic {
 
 int Scheme::work_fields(const Method &method, int dimension, int forces) {
   return method.staggered() ? dimension + std::max(dimension, forces) : forces;
+}
+
+double Scheme::fields(const Method &method, int dimension, const ViscosityContrast &contrast, bool bodies, bool rigid,
+                      bool travel) {
+  double sum = 0;
+  if (contrast.exists()) sum += LocalViscosity::components(dimension);
+  if (method.implicit_viscosity(contrast.exists(), rigid)) sum += ImplicitViscosity::fields(dimension);
+  if (extrapolates_pressure(method, contrast, travel)) sum += 1;
+  if (bodies && method.linear_force()) sum += dimension;  // slope
+  return sum;
 }
 
 bool Scheme::extrapolates_pressure(const Method &method, const ViscosityContrast &contrast, bool travel) {

@@ -17,6 +17,10 @@ public:
   virtual ~Scheme() = default;
   /// Number of work-space fields that a prediction holds, `forces` of them for the forces of surfaces.
   static int work_fields(const Method &method, int dimension, int forces);
+  /// Memory beside the work space and the parts of the flow, in fields of the grid. `bodies`: any species; `rigid`,
+  /// `travel`: rigid bodies, and such that travel.
+  static double fields(const Method &method, int dimension, const ViscosityContrast &contrast, bool bodies, bool rigid,
+                       bool travel);
   /// Whether a step begins with the pressure extrapolated to its middle rather than with the last one. `travel`:
   /// whether rigid bodies travel.
   static bool extrapolates_pressure(const Method &method, const ViscosityContrast &contrast, bool travel);

@@ -34,6 +34,18 @@ int Solver::work_fields(const Method &method, int dimension, const Contents &sce
                    scene.bodies ? GridBodies::work_fields(method, dimension) : 0});
 }
 
+double Solver::fields(const SolverSpec &spec, int dimension, const Contents &scene, const ViscosityContrast &contrast) {
+  double sum = 2 * dimension + 1 + work_fields(spec, dimension, scene) +  // velocity, predictor, pressure
+               Projection::fields(spec, dimension, scene.rigid) +
+               Scheme::fields(spec, dimension, contrast, scene.bodies, scene.rigid, scene.travel) +
+               scene.loaded_outlets;                             // their responses
+  if (spec.staggered() && spec.fluid.inertia) sum += dimension;  // advection of the step before
+  if (scene.bodies) sum += GridBodies::fields(spec, dimension, scene.elastic);
+  if (scene.membranes) sum += dimension;  // their force
+  if (scene.travel) sum += dimension;     // which faces are inside rigid bodies; twice that beside bodies of a file
+  return sum;
+}
+
 PetscErrorCode Solver::create(const Domain &domain, const SolverSpec &spec) {
   const int dim = domain.dimension();
   PetscFunctionBeginUser;

@@ -18,15 +18,21 @@ class Scheme;
 struct AdhesionSpec;
 struct RigidLoad;
 struct SurfaceMeasure;
+struct ViscosityContrast;
 
 class Solver {
 public:
-  /// Contents of a scene that determine the size of the work space.
+  /// Contents of a scene that determine how much memory its fields take. Surface tension and membranes are those of
+  /// bodies on the grid; `travel`: rigid bodies that do; `elastic`: any body that carries B.
   struct Contents {
     bool open = false, bodies = false, surface_tension = false, membranes = false, rigid = false;
+    bool travel = false, elastic = false;
+    int loaded_outlets = 0;
   };
   /// Number of work-space fields that the method needs for the scene.
   static int work_fields(const Method &method, int dimension, const Contents &scene);
+  /// Doubles per cell of all fields, without those of the species themselves.
+  static double fields(const SolverSpec &spec, int dimension, const Contents &scene, const ViscosityContrast &contrast);
   Solver();
   Solver(Solver &&) noexcept;
   Solver &operator=(Solver &&) noexcept;
