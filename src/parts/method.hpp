@@ -14,7 +14,7 @@ enum class PressureKind { acm, smac, ksp };
 struct Method {
   MethodKind kind = MethodKind::classic;
   ViscousScheme viscous = ViscousScheme::explicit_euler;
-  double viscous_tolerance = 0.05;  ///< of the residual of the implicit viscous step, relative to its right-hand side
+  double viscous_tolerance = 0.01;  ///< of the residual of the implicit viscous step, relative to its right-hand side
   InterfaceScheme interface = InterfaceScheme::weno5;
   SolidExterior exterior = SolidExterior::identity;
   ElasticForce elastic_force = ElasticForce::constant;  ///< variation within a step
