@@ -114,8 +114,8 @@ void add_method(Rows &rows, Config &config) {
               "explicit: a single stage, which needs short time steps; auto: an implicit step if viscosities differ "
               "and no body is rigid, otherwise rkl");
   rows.real("viscous_tolerance", method.viscous_tolerance, positive, "",
-            "relative residual below which the iterations of the implicit viscous step stop; smaller where viscosities "
-            "differ by more than a factor of 4");
+            "relative residual below which the iterations of the implicit viscous step stop; at most 0.1 times the "
+            "square root of the least over the largest viscosity is taken");
   rows.choice("interface_scheme", method.interface, {"plic", "weno5"},
               "transport of the solid fraction; plic: a plane in each cut cell, which keeps interfaces sharp and "
               "conserves volume; weno5: WENO5 differences, which smear interfaces");
