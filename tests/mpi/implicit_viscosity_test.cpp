@@ -150,8 +150,8 @@ TEST(ImplicitViscosity, IsOfSecondOrderBesideMovingWalls) {
 // With the tolerance of the program, which leaves a part of the residual.
 TEST(ImplicitViscosity, EnergyDecreasesInStepsOfAnyLength) {
   for (const bool flat : {false, true})
-    for (const double contrast : {0.001, 0.2, 5.0, 20.0, 1e4})
-      for (const double dt : {1e-3, 0.1, 10.0, 1e3, 1e4}) {
+    for (const double contrast : {0.001, 0.2, 5.0, 100.0, 1e4})
+      for (const double dt : {1e-3, 0.1, 10.0, 100.0, 1e3}) {
         Flow flow(flat, {false, true, true}, contrast);
         flow.stop_walls();
         ImplicitViscosity implicit;
