@@ -267,28 +267,38 @@ void BoxExchange::in_order(const VisitOwn &visit_own, const VisitReceived &visit
   }
 }
 
-PetscErrorCode BoxExchange::collect(const std::vector<const Field *> &fields, const Visit &visit) {
+PetscErrorCode BoxExchange::collect(const FieldOf &field_of, const Visit &visit) {
   PetscFunctionBeginUser;
   EventScope scope(Event::exchange);
-  for (std::size_t b = 0; b < places_.size(); ++b)
+  for (std::size_t b = 0; b < places_.size(); ++b) {
+    if (places_[b].remote.empty()) continue;
+    const Field &field = field_of(b);
     for (int f = 0; f < components_; ++f)
       for (const Run &run : places_[b].remote)
-        std::copy_n((*fields[b])[f].row(run.j, run.k) + run.i, run.count,
-                    buffer_.data() + f * buffer_size_ + run.elsewhere);
+        std::copy_n(field[f].row(run.j, run.k) + run.i, run.count, buffer_.data() + f * buffer_size_ + run.elsewhere);
+  }
   PetscCall(gather());
-  std::vector<double> values(components_);
+  std::vector<const double *> values(components_);
   const auto visit_own = [&](std::size_t b) {
-    for (const Run &run : places_[b].own)
-      for (int m = 0; m < run.count; ++m) {
-        for (int f = 0; f < components_; ++f) values[f] = (*fields[b])[f].row(run.j, run.k)[run.i + m];
-        visit(places_[b].number, run.elsewhere + m, values.data());
-      }
+    if (places_[b].own.empty()) return;
+    const Field &field = field_of(b);
+    for (const Run &run : places_[b].own) {
+      for (int f = 0; f < components_; ++f) values[f] = field[f].row(run.j, run.k) + run.i;
+      visit(places_[b].number, run.elsewhere, run.count, values.data());
+    }
   };
+  std::vector<double> row;
   in_order(visit_own, [&](int number, const Parcel &parcel) {
     const std::size_t points = parcel.slots.size() / components_;  // component after component
-    for (std::size_t n = 0; n < points; ++n) {
-      for (int f = 0; f < components_; ++f) values[f] = received_[parcel.slots[n + f * points]];
-      visit(number, parcel.offsets[n], values.data());
+    for (std::size_t n = 0, count; n < points; n += count) {
+      for (count = 1; n + count < points && parcel.offsets[n + count] == parcel.offsets[n] + static_cast<int>(count);)
+        ++count;
+      row.resize(components_ * count);
+      for (int f = 0; f < components_; ++f) {
+        values[f] = row.data() + f * count;
+        for (std::size_t m = 0; m < count; ++m) row[f * count + m] = received_[parcel.slots[n + m + f * points]];
+      }
+      visit(number, parcel.offsets[n], static_cast<int>(count), values.data());
     }
   });
   PetscFunctionReturn(0);

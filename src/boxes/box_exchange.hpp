@@ -57,11 +57,14 @@ public:
   /// Adds values of every box to the owned values of fields of the grid. Where boxes overlap their values are added in
   /// the order of the numbers, so that the sum does not depend on the owners of the boxes. Collective.
   PetscErrorCode add(const std::vector<Contribution> &contributions, const std::vector<WeightedTarget> &targets);
-  /// Calls visit(number, offset, values) for all points of this rank's grid that lie in boxes, box after box in the
-  /// order of the numbers: `offset` in a component of the grid's fields, `values`: the components of the box's field
-  /// there. One field of every box of this rank. Collective.
-  using Visit = std::function<void(int number, std::ptrdiff_t offset, const double *values)>;
-  PetscErrorCode collect(const std::vector<const Field *> &fields, const Visit &visit);
+  /// Calls visit(number, offset, count, values) for all points of this rank's grid that lie in boxes, `count` points
+  /// that follow each other along x at a time, box after box in the order of the numbers: `offset` of the first one in
+  /// a component of the grid's fields, `values[f]`: those of component f of the box's field there. field_of(b): the
+  /// field of box b of this rank, used until the next call, which is asked for twice if parts of the box lie on other
+  /// ranks. Collective.
+  using FieldOf = std::function<const Field &(std::size_t box)>;
+  using Visit = std::function<void(int number, std::ptrdiff_t offset, int count, const double *const *values)>;
+  PetscErrorCode collect(const FieldOf &field_of, const Visit &visit);
   /// Sets `rows`, one value for each row of this rank's cells, where any box of any rank lies.
   void mark_rows(std::vector<char> *rows) const;
   std::size_t bytes() const;

@@ -220,11 +220,13 @@ std::vector<BodyInBox> FreeBodies::list() const {
 
 namespace {
 
-// What show() sends of a box: the species, phi, B, and for every component of B phi where it lives.
-enum { species_shown, fraction_shown, tensor_shown };
+// What show() sends of a box at a time: the species, one quantity, and phi where that lives.
+enum { species_shown, value_shown, held_shown, all_shown };
+constexpr int fraction = -1;  // as a quantity; the others are components of B
 
-// Of a block of cells of a body.
-void fill_shown(const BodyInBox &body, const Box &block, int tensors, Field *field) {
+// Of a block of cells of a body: phi, or a component of B less its value at rest. Sets all values of the field.
+void fill_shown(const BodyInBox &body, const Box &block, int quantity, Field *field) {
+  field->clear();
   field->fill(species_shown, body.species);
   const Int3 first = block_offset(*body.box, block);
   const auto of_block = [&first](ConstView view) {
@@ -232,18 +234,19 @@ void fill_shown(const BodyInBox &body, const Box &block, int tensors, Field *fie
     return view;
   };
   const ConstView phi = of_block(body.phase->fraction[0]);
-  for_points(block.rows(), [&](int i, int j, int k) { (*field)[fraction_shown](i, j, k) = phi(i, j, k); });
-  for (int c = 0; c < tensors; ++c) {
-    const TensorComponent &component = body.phase->tensor.components()[c];
-    const auto low = component.steps(phi);
-    const ConstView B = of_block(body.phase->tensor.field[c]);
-    const View tensor = (*field)[tensor_shown + c], part = (*field)[tensor_shown + tensors + c];
-    for_points(block.points(component.at), [&](int i, int j, int k) {
-      const double *here = &phi(i, j, k);
-      part(i, j, k) = 0.25 * ((here[0] + here[-low[0] - low[1]]) + (here[-low[0]] + here[-low[1]]));
-      tensor(i, j, k) = B(i, j, k) - component.rest();
-    });
+  const View value = (*field)[value_shown], held = (*field)[held_shown];
+  if (quantity == fraction) {
+    for_points(block.rows(), [&](int i, int j, int k) { value(i, j, k) = held(i, j, k) = phi(i, j, k); });
+    return;
   }
+  const TensorComponent &component = body.phase->tensor.components()[quantity];
+  const auto low = component.steps(phi);
+  const ConstView B = of_block(body.phase->tensor.field[quantity]);
+  for_points(block.points(component.at), [&](int i, int j, int k) {
+    const double *here = &phi(i, j, k);
+    held(i, j, k) = 0.25 * ((here[0] + here[-low[0] - low[1]]) + (here[-low[0]] + here[-low[1]]));
+    value(i, j, k) = B(i, j, k) - component.rest();
+  });
 }
 
 }  // namespace
@@ -251,44 +254,57 @@ void fill_shown(const BodyInBox &body, const Box &block, int tensors, Field *fie
 PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const {
   PetscFunctionBeginUser;
   const std::vector<TensorComponent> &components = tensor_components(domain_->dimension());
-  const int tensors = static_cast<int>(components.size());
-  const int part = tensor_shown + tensors, all = part + tensors;
-  std::vector<Field> fields;
-  std::vector<const Field *> shown;
   std::vector<Box> blocks;
   std::vector<BoxExchange::NumberedBox> boxes;
   // Cells of bodies, and those around that B is extended to.
   for (const BodyInBox &body : seen)
     blocks.push_back(body.phase->block(*body.box, ExteriorLayers::layers, ExteriorLayers::layers + 1));
+  std::ptrdiff_t largest = 0;
   for (std::size_t b = 0; b < seen.size(); ++b) {
-    fill_shown(seen[b], blocks[b], tensors, &fields.emplace_back(blocks[b], all));
+    largest = std::max<std::ptrdiff_t>(largest, blocks[b].layout().size);
     boxes.push_back({&blocks[b], seen[b].number});
   }
-  for (const Field &field : fields) shown.push_back(&field);
-  std::map<int, Field> most;  // phi of the body that B at the point is of
-  for (const auto &[s, phase] : phases) most[s] = Field::on_demand(*domain_, 1 + tensors);
-  BoxExchange exchange(*domain_, all);
+  BoxExchange exchange(*domain_, all_shown);
   PetscCall(exchange.connect(boxes));
+  std::vector<double> memory(all_shown * largest);
+  Field block;
+  std::map<int, Field> most;  // phi of the body that the quantity at a point is of
+  for (const auto &[s, phase] : phases) most[s] = Field(*domain_, 1);
   const std::ptrdiff_t size = domain_->layout().size;
-  PetscCall(exchange.collect(shown, [&](int number, std::ptrdiff_t at, const double *values) {
-    const int s = static_cast<int>(values[species_shown]);
-    Phase &phase = *phases.at(s);
-    double *best = most.at(s).data() + at;
-    const double fraction = values[fraction_shown];
-    if (fraction > 0) phase.fraction.data()[at] += fraction;
-    if (fraction > *best) {
-      *best = fraction;
-      if (phase.label) phase.label.data()[at] = number;
-    }
-    for (int c = 0; c < tensors; ++c) {
-      const double rest = components[c].rest(), tensor = values[tensor_shown + c];
-      double &B = phase.tensor.field.data()[c * size + at], &largest = best[(1 + c) * size];
-      const bool first = largest == 0 && tensor != 0 && B == rest;
-      if (!first && values[part + c] <= largest) continue;
-      B = rest + tensor;
-      largest = values[part + c];
-    }
-  }));
+  // One quantity at a time, as all of them would take several times the memory of the grid's fields.
+  for (int quantity = fraction; quantity < static_cast<int>(components.size()); ++quantity) {
+    if (quantity != fraction)
+      for (auto &[s, field] : most) field.clear();
+    const auto field_of = [&](std::size_t b) -> const Field & {
+      block = Field::in_memory(blocks[b], all_shown, memory.data());
+      fill_shown(seen[b], blocks[b], quantity, &block);
+      return block;
+    };
+    PetscCall(exchange.collect(field_of, [&](int number, std::ptrdiff_t at, int count, const double *const *values) {
+      const int s = static_cast<int>(values[species_shown][0]);
+      const double *value = values[value_shown], *held = values[held_shown];
+      Phase &phase = *phases.at(s);
+      double *most_held = most.at(s).data() + at;
+      if (quantity == fraction) {
+        double *phi = phase.fraction.data() + at;
+        for (int m = 0; m < count; ++m) {
+          if (value[m] > 0) phi[m] += value[m];
+          if (held[m] <= most_held[m]) continue;
+          most_held[m] = held[m];
+          if (phase.label) phase.label.data()[at + m] = number;
+        }
+        return;
+      }
+      const double rest = components[quantity].rest();
+      double *B = phase.tensor.field.data() + quantity * size + at;
+      for (int m = 0; m < count; ++m) {
+        const bool first = most_held[m] == 0 && value[m] != 0 && B[m] == rest;
+        if (!first && held[m] <= most_held[m]) continue;
+        B[m] = rest + value[m];
+        most_held[m] = held[m];
+      }
+    }));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -171,19 +171,20 @@ TEST_P(BoxExchangeTest, CollectsInTheOrderOfNumbersWhoeverOwnsTheBoxes) {
   for (const bool deal : {true, false}) {
     const std::vector<std::size_t> mine = owned(1, deal);
     ASSERT_EQ(exchange.connect(numbered(mine)), 0);
-    std::vector<Field> fields;
-    std::vector<const Field *> list;
-    for (const std::size_t b : mine) {
-      Field &field = fields.emplace_back(boxes[b], 3);
+    Field field;  // of one box at a time
+    const auto field_of = [&](std::size_t own_box) -> const Field & {
+      const std::size_t b = mine[own_box];
+      field = Field(boxes[b], 3);
       for (int f = 0; f < 3; ++f)
         for_each_point(boxes[b], [&](const Int3 &p, const Int3 &) { field[f](p[0], p[1], p[2]) = share(b, f, p); });
-    }
-    for (const Field &field : fields) list.push_back(&field);
+      return field;
+    };
     std::vector<Seen> seen;
-    ASSERT_EQ(exchange.collect(list,
-                               [&](int number, std::ptrdiff_t offset, const double *values) {
+    ASSERT_EQ(exchange.collect(field_of,
+                               [&](int number, std::ptrdiff_t offset, int count, const double *const *values) {
                                  EXPECT_TRUE(seen.empty() || seen.back().number <= number);
-                                 seen.push_back({number, offset, {values[0], values[1], values[2]}});
+                                 for (int m = 0; m < count; ++m)
+                                   seen.push_back({number, offset + m, {values[0][m], values[1][m], values[2][m]}});
                                }),
               0);
     std::sort(seen.begin(), seen.end());
