@@ -210,9 +210,9 @@ class Docs(unittest.TestCase):
         self.assertEqual({picture.name for picture in (ROOT / "docs/images").iterdir()}, shown)
 
     def test_evidence_is_of_the_release(self):
-        """Once CHANGELOG.md ends with a release, all steps and stamps have its version, all measured times the same sources, and all
+        """Once CHANGELOG.md begins with a release, all steps and stamps have its version, all measured times the same sources, and all
         steps the same results."""
-        newest = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[-1]
+        newest = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[0]
         known = json.loads((ROOT / "docs/evidence.json").read_text()) if (ROOT / "docs/evidence.json").exists() else {}
         self.assertEqual(set(known) - {step.name for step in evidence.STEPS}, set())
         if newest == "Unreleased":
@@ -227,8 +227,8 @@ class Docs(unittest.TestCase):
             self.assertEqual(stamps - made, set(), page)
 
     def test_pictures_are_at_print_size(self):
-        """1,600 pixels wide, or 1,200 for square ones: those of the gallery, and once CHANGELOG.md ends with a release all."""
-        newest = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[-1]
+        """1,600 pixels wide, or 1,200 for square ones: those of the gallery, and once CHANGELOG.md begins with a release all."""
+        newest = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)[0]
         pattern = "gallery_*" if newest == "Unreleased" else "*"
         pictures = [path for path in (ROOT / "docs/images").glob(pattern) if path.suffix != ".svg"]
         self.assertGreater(len(pictures), 30)
