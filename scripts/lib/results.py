@@ -20,6 +20,12 @@ OPTIONS = ["-time_steps_max", str(STEPS), "-series_interval", "0", "-snapshot_in
            "-guard_energy_growth", "off"]  # coarse grids may be unstable
 
 
+def identity(program):
+    """Returns a text that identifies what `program` computes, to name its finished runs: EULASTIC_RESULTS, which scripts/evidence sets to
+    results(), or a hash of the file."""
+    return os.environ.get("EULASTIC_RESULTS") or hashlib.sha256(pathlib.Path(program).read_bytes()).hexdigest()
+
+
 def coarse_grid(case):
     """Returns options that divide the cells of a case in every direction by the same power of two, until there are at most
     CELLS_MAX."""

@@ -1,5 +1,5 @@
-"""Runs the program for the cases. A finished run is kept, under a key of its options, its file and the program; an interrupted run
-continues from its last checkpoint."""
+"""Runs the program for the cases. A finished run is kept, under a key of its options, its file and the results of the program; an
+interrupted run continues from its last checkpoint."""
 import collections
 import hashlib
 import json
@@ -13,6 +13,7 @@ import threading
 import h5py
 import program_environment  # noqa: F401
 from eulastic import Run
+from results import identity
 
 from .case import ROOT
 
@@ -24,7 +25,7 @@ class Failed(Exception):
 class Runner:
     def __init__(self, program, work):
         self.program, self.work = program, work
-        self.version = hashlib.sha256(program.read_bytes()).hexdigest()
+        self.identity = identity(program)
         self.busy = collections.defaultdict(threading.Lock)  # of a directory: cases may share a run
         self.environment = {name: value for name, value in os.environ.items() if name != "PETSC_OPTIONS"}
 
@@ -35,7 +36,7 @@ class Runner:
             options["initial_state"] = self.written(case.start(key))
         words = [word for name, value in options.items() for word in (f"-{name}", str(value))]
         file = ROOT / "options" / f"{case.file}.opts"
-        text = json.dumps([self.version, file.read_text(), words])
+        text = json.dumps([self.identity, file.read_text(), words])
         tail = re.sub(r"\W+", "_", f"{case.name}_{setting.method}_{setting.solver}_{key}".lower())
         directory = self.work / f"{tail}_{hashlib.sha256(text.encode()).hexdigest()[:12]}"
         return [str(self.program), str(file), *words], directory
