@@ -120,6 +120,16 @@ struct MovingWall {
         sums->add(wall_power, 0.5 * speed * elastic_traction(c, edge_of({i, j, k})));
       });
     }
+    // The control volume of a face on an open boundary is half of that of other faces.
+    for (const bool end_high : {false, true}) {
+      if (!box.touches(c, end_high) || !box.is_open(c, end_high)) continue;
+      Int3 first = begin, last = end;
+      first[c] = end_high ? box.cells()[c] : 0;
+      last[c] = first[c] + 1;
+      for_points({first, last}, [&](int i, int j, int k) {
+        sums->add(wall_power, 0.5 * speed * traction(c, {i, j, k}));
+      });
+    }
     if (box.touches_low(c)) begin[c] = 1;
     for_points({begin, end}, [&](int i, int j, int k) { sums->add(wall_power, speed * traction(c, {i, j, k})); });
   }
@@ -177,6 +187,19 @@ void add_wall_power(const Box &box, const Field &velocity, const std::vector<con
   }
 }
 
+// Corrects the sum of the faces 0 to n - 1 of a direction c that is not periodic: faces 0 and n have half of the volume
+// of others.
+void add_momentum_at_ends(const Domain &domain, ConstView velocity, int c, ExactSums *sums) {
+  for (const bool high : {false, true}) {
+    if (!domain.is_wall(c) || !domain.touches(c, high)) continue;
+    const std::ptrdiff_t to_face = high ? velocity.stride(c) : 0;
+    for_points(domain.boundary_cells(c, high, 1), [&](int i, int j, int k) {
+      const double face = (&velocity(i, j, k))[to_face];
+      sums->add(momentum_x + c, high ? 0.5 * face : -0.5 * face);
+    });
+  }
+}
+
 }  // namespace
 
 void strain_energy(const Box &box, const Phase &phase, const Segment &row, double *out) {
@@ -198,6 +221,8 @@ PetscErrorCode measure_energy_rates(const Domain &domain, const Field &velocity,
       if (numbers.force[c] != 0)
         for (const Segment &row : part.rows(domain))
           all.add_row(momentum_x + c, velocity[c].row(row.j, row.k), n, first);
+    for (int c = 0; part.first && c < domain.dimension(); ++c)
+      if (numbers.force[c] != 0) add_momentum_at_ends(domain, velocity[c], c, &all);
     for (const Phase *phase : elastic) add_elastic(domain, part.rows(domain), velocity, *phase, &all);
     const Piece own(bodies.size(), part.number, row_parts(domain));
     for (std::size_t b = own.begin; b < own.end; ++b) {

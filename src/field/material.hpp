@@ -28,6 +28,8 @@ struct Fluid {
   bool inertia = true;   ///< false omits v.grad v
   BodyForce body_force;
   double kinematic_viscosity() const { return viscosity / density; }
+  /// Returns rho in terms that belong to v.grad v: kinetic energy through a boundary, dynamic pressure of backflow.
+  double inertial_density() const { return inertia ? density : 0; }
 };
 
 /// red_cell occurs in options only: it stands for a membrane with the parameters of a red blood cell.

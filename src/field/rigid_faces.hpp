@@ -98,13 +98,14 @@ public:
   /// A fluid face with neighbours inside a body. Links are ordered low x, high x, low y, ...
   struct Cut {
     int i = 0;
-    int body = 0;        ///< index in `bodies` of the body that cuts its links
+    int body = 0;        ///< index in `bodies` of a body that cuts its links: one that travels, if there is any
     unsigned walls = 0;  ///< bits of the links that end at the surface
     /// factor s of the rate, which keeps the stages of the viscous step stable (docs/method.md, section 19)
     double share = 1;
     double open = 1;   ///< factor w of the gradient of the pressure increment, max(s, .03)
     double link[6]{};  ///< 1 / (length of the link times the spacing)
     double turn[6]{};  ///< component of W x (x - centre) where a link meets the surface
+    int of_link[6]{};  ///< index in `bodies` of the body whose surface that is
     double laplacian(const double *u, const std::array<std::ptrdiff_t, 3> &stride, int dimension,
                      const double *wall) const;
   };

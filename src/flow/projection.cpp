@@ -184,7 +184,8 @@ PetscErrorCode start_flow(Flow *flow, Projection *projection) {
              [&](int i, int j, int k) { largest = std::max(largest, std::fabs(now.pressure[0](i, j, k))); });
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, domain.comm()));
   if (largest > 0) PetscFunctionReturn(0);  // the pressure was read from a file
-  fill_ghosts_of_given_pressure(domain, flow->spec.sides, now.time, flow->fluid.density, now.velocity, now.pressure[0]);
+  fill_ghosts_of_given_pressure(domain, flow->spec.sides, now.time, flow->fluid.inertial_density(), now.velocity,
+                                now.pressure[0]);
   const MomentumStep step{now.time, 1, flow->speed_scale(1), {}};
   PetscCall(momentum_rate(domain, flow->fluid, step, now.velocity, now.pressure, {}, no_advection, rate));
   for (int d = 0; d < dim; ++d)

@@ -120,7 +120,7 @@ PetscErrorCode Outputs::look(Measured *measured) {
     PetscCall(solver_->bodies().measure(*domain_, *phases, state.velocity, strain_energy, &m.bodies, boxed));
   PetscCall(solver_->surface_energy(&m.surface, &m.surfaces));
   // Loads follow from the pressure, which is half a step behind, as are the bodies that are measured first.
-  if (!again && solver_->bodies().bodies() > 0) PetscCall(solver_->rigid_loads(&m.loads));
+  if (!again) PetscCall(solver_->rigid_loads(&m.loads));
   if (!again) PetscCall(measure_vessel_loads(config_, solver_, &m.surface_loads));
   if (Adhesion *adhesion = solver_->part<Adhesion>(); adhesion && !again) {
     PetscCall(adhesion->measure(&m.bonds));
@@ -162,7 +162,7 @@ PetscErrorCode Outputs::measure_energy(Measured *measured) {
     energy.wall_range += fluid.viscosity * solver_->rigid()->masses[b].dissipation(solver_->rigid()->motion_of(int(b)),
                                                                                    domain_->dimension());
   }
-  PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, fluid.density, state.velocity,
+  PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, fluid.inertial_density(), state.velocity,
                                state.pressure, &measured->sides));
   for (const SideFlow &side : measured->sides) energy.rates.side_power += side.power;
   set_energy_scales(&energy);
@@ -238,8 +238,8 @@ PetscErrorCode Outputs::record_pressure(double dt) {
   const State &state = solver_->state();
   const double share = row_.dt / (row_.dt + dt);
   std::vector<SideFlow> next;
-  PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, config_.fluid.density, state.velocity,
-                               state.pressure, &next));
+  PetscCall(measure_side_flows(*domain_, solver_->sides_now(), state.time, config_.fluid.inertial_density(),
+                               state.velocity, state.pressure, &next));
   row_.energy.rates.side_power = 0;
   for (std::size_t s = 0; s < next.size(); ++s) {
     SideFlow &side = row_.sides[s];

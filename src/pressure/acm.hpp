@@ -34,6 +34,7 @@ public:
   const AcmCoefficients &last() const { return last_; }
   const kernels::AcmIncrement *formula() const override { return domain_->any_open() ? nullptr : &formula_; }
   double sound_speed() const override { return sound_speed_; }
+  void forget_sound_speed() override { sound_speed_ = 0; }
 
 private:
   const Domain *domain_;

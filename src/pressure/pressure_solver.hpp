@@ -28,6 +28,8 @@ public:
   virtual long sweeps() const { return 0; }
   /// Sound speed beta of the last solve() by artificial compressibility; else 0.
   virtual double sound_speed() const { return 0; }
+  /// Sets it to 0 until the next solve(): the last one was none of a time step.
+  virtual void forget_sound_speed() {}
   /// Fields that must be in a checkpoint for the same bits after a restart, or null.
   virtual Field *memory() { return nullptr; }
   /// Sets these fields to 0; until the next solve() their owned cells may be written.

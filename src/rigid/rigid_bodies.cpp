@@ -205,6 +205,7 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
   const Int3 &N = domain_.domain_cells(), &begin = domain_.layout().begin, local{i, j, k};
   const double *inside = inside_[a][0].row(j, k) + i;
   const double *level = level_[a] ? level_[a][0].row(j, k) + i : nullptr;
+  const auto travels = [this](int body) { return faces_.motions[faces_.bodies[body].motion].travels(); };
   RigidFaces::Cut cut;
   cut.i = i;
   double diagonal = 0, regular = 0;
@@ -229,8 +230,9 @@ RigidFaces::Cut RigidBodies::cut_at(int a, int i, int j, int k) {
         beside[d] = neighbour[d] - one;
         const double part = crossing(body, beside, neighbour, level ? level[0] : 0, level ? level[step] : 0);
         if (cut.walls != 0) note_contact(cut.body, body);
+        if (cut.walls == 0 || !travels(cut.body)) cut.body = body;
         cut.walls |= 1U << link;
-        cut.body = body;
+        cut.of_link[link] = body;
         cut.link[link] /= part;
         Real3 surface = beside;
         surface[d] += one * part;
@@ -539,8 +541,11 @@ PetscErrorCode RigidBodies::find_faces(double time, double surface_time) {
     if (level_[a]) PetscCall(exchange_.update_ghosts(level_[a], domain_.layout().ghosts[a]));
     components[a] = component(a, layers);
     for (const RigidFaces::Cut &cut : components[a].cuts) {
-      const double along = std::fabs(faces_.motions[faces_.bodies[cut.body].motion].velocity[a]);
-      for (const double turn : cut.turn) faces_.speed[a] = std::max(faces_.speed[a], along + std::fabs(turn));
+      for (int link = 0; link < 6; ++link) {
+        if (!(cut.walls >> link & 1U)) continue;
+        const double along = std::fabs(faces_.motions[faces_.bodies[cut.of_link[link]].motion].velocity[a]);
+        faces_.speed[a] = std::max(faces_.speed[a], along + std::fabs(cut.turn[link]));
+      }
     }
     if (travel()) continue;
     inside_[a] = {};

@@ -109,10 +109,9 @@ void RigidImpulse::for_moving_faces(const Visit &visit) const {
 // face ahead.
 double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, int k, const Field &velocity) const {
   const Strides s = strides(velocity[a]);
-  const RigidMotion &motion = motion_of(cut.body);
   const double *u = velocity[a].row(j, k) + cut.i;
   double wall[6], correction = 0;
-  surface_velocity(faces_, cut, a, motion.of_velocity.at(time_), motion.of_rotation.at(time_), wall);
+  surface_velocity(faces_, cut, a, time_, wall);
   for (int d = 0; d < domain_.dimension(); ++d) {
     const double along = carrying_velocity(velocity, a, d, cut.i, j, k), h = domain_.spacing()[d];
     const int behind = 2 * d + (along < 0), ahead = 2 * d + (along > 0);
@@ -183,9 +182,9 @@ void RigidImpulse::add_cut(int a, const RigidFaces::Cut &cut, int j, int k, Exac
   if (volume == 0) return;
   const double mass = fluid_.density * domain_.cell_volume() * volume, nu = fluid_.kinematic_viscosity(),
                u = means_.velocity[a][index(a, cut)];
-  const auto &of_body = means_.factors[faces_.bodies[cut.body].motion];
   double wall[6], missing = missing_rate_[a][index(a, cut)];
-  surface_velocity(faces_, cut, a, of_body[0], of_body[1], wall);
+  surface_velocity(
+      faces_, cut, a, [this](int motion) { return means_.factors[motion]; }, wall);
   for (int link = 0; link < 2 * domain_.dimension(); ++link) {
     if (!(cut.walls >> link & 1U)) continue;
     const auto [body, place] = link_end(domain_, faces_, a, {cut.i, j, k}, link);

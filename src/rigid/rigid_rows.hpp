@@ -5,17 +5,35 @@
 #include "field/rigid_faces.hpp"
 #include "kernels/momentum.hpp"
 
+#include <array>
+#include <utility>
+
 namespace eulastic {
 
 using Strides = std::array<std::ptrdiff_t, 3>;
 
 inline Strides strides(ConstView q) { return {1, q.sy, q.sz}; }
 
-// Sets `wall` to component a of the surface velocity at the end of each link.
-inline void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double of_velocity,
-                             double of_rotation, double *wall) {
-  const double along = faces.motions[faces.bodies[cut.body].motion].velocity[a] * of_velocity;
-  for (int link = 0; link < 6; ++link) wall[link] = along + cut.turn[link] * of_rotation;
+// Sets `wall` to component a of the surface velocity at the end of each link that ends at a surface. factors(motion)
+// returns the factors of velocity and rotation of a motion of `faces`; bodies on both sides of a face may differ in it.
+template <class Factors>
+void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut, int a, const Factors &factors,
+                      double *wall) {
+  int known = -1;
+  std::array<double, 2> of{};
+  for (int link = 0; link < 6; ++link) {
+    if (!(cut.walls >> link & 1U)) continue;
+    const int motion = faces.bodies[cut.of_link[link]].motion;
+    if (std::exchange(known, motion) != motion) of = factors(motion);
+    wall[link] = faces.motions[motion].velocity[a] * of[0] + cut.turn[link] * of[1];
+  }
+}
+
+inline void surface_velocity(const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time, double *wall) {
+  const auto at_time = [&](int motion) {
+    return std::array{faces.motions[motion].of_velocity.at(time), faces.motions[motion].of_rotation.at(time)};
+  };
+  surface_velocity(faces, cut, a, at_time, wall);
 }
 
 // Component d of the velocity, averaged to a face of component a.
@@ -82,9 +100,8 @@ struct Viscous {
 };
 inline Viscous viscous_rates(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, double time,
                              const double *u, const Strides &s) {
-  const RigidMotion &motion = faces.motions[faces.bodies[cut.body].motion];
   double wall[6];
-  surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+  surface_velocity(faces, cut, a, time, wall);
   return {cut.laplacian(u, s, box.dimension(), wall), regular_laplacian(box, u, s)};
 }
 
@@ -99,7 +116,7 @@ inline double rate_in_body_frame(const Box &box, const RigidFaces &faces, const 
   for (int d = 0; d < box.dimension(); ++d) place[d] += faces.ahead[body.motion][d];
   const Real3 r = RigidFaces::arm(body, place, box.spacing()), frame = motion.frame_velocity(r, middle);
   double wall[6], sum = 0, stiffness = 0;
-  surface_velocity(faces, cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+  surface_velocity(faces, cut, a, time, wall);
   for (int d = 0; d < box.dimension(); ++d) {
     const double V = frame[d];
     const int link = 2 * d + (V < 0);

@@ -41,10 +41,9 @@ void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, 
     const Strides s = strides(velocity[a]);
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
       if (!owned(box, a, cut->i)) continue;
-      const RigidMotion &motion = faces.motions[faces.bodies[cut->body].motion];
       const double *u = velocity[a].row(j, k) + cut->i;
       double wall[6], correction = 0;
-      surface_velocity(faces, *cut, a, motion.of_velocity.at(time), motion.of_rotation.at(time), wall);
+      surface_velocity(faces, *cut, a, time, wall);
       for (int d = 0; d < box.dimension(); ++d) {
         const double along = carrying_velocity(velocity, a, d, cut->i, j, k), inverse = 1 / box.spacing()[d];
         const int behind = 2 * d + (along < 0), ahead = 2 * d + (along > 0);
@@ -158,10 +157,9 @@ void RigidStage::hold(const RigidFaces::Row &row, int dimension, int a, int begi
     const int i = cut->i;
     if (i < begin || i >= end) continue;
     double wall[6] = {};
-    if (faces_.moves) {
-      const std::array<double, 2> &moved = moved_[faces_.bodies[cut->body].motion];
-      surface_velocity(faces_, *cut, a, moved[0], moved[1], wall);
-    }
+    if (faces_.moves)
+      surface_velocity(
+          faces_, *cut, a, [this](int motion) { return moved_[motion]; }, wall);
     double sum = c.nu * before[i];
     sum += c.mu * now[i];
     sum += c.rate * rate[i];
@@ -180,11 +178,43 @@ void RigidStage::release(const RigidFaces::Row &row, int begin, int end, const s
 
 // Viscous dissipation beside rigid bodies.
 
+namespace {
+
+// The sum over links that end at a surface of (u - V) ((u_inside - u) / h^2 - (u_surface - u) / (theta h^2)), with V
+// the velocity of the link's body at the face: what the stress of the whole grid has too much, per viscosity and
+// volume.
+double excess_at_cut(const Domain &domain, const RigidFaces &faces, const RigidFaces::Cut &cut, int a,
+                     const Real3 &place, double time, const double *u, const Strides &s) {
+  const Real3 &h = domain.spacing();
+  const auto of_body = [&](int image) {
+    const RigidBody &body = faces.bodies[image];
+    const RigidMotion &motion = faces.motions[body.motion];
+    return faces.velocity(a, body, place, h, motion.of_velocity.at(time), motion.of_rotation.at(time));
+  };
+  bool same = true;
+  for (int link = 0; link < 6; ++link)
+    same = same && (!(cut.walls >> link & 1U) || faces.bodies[cut.of_link[link]].index == faces.bodies[cut.body].index);
+  if (same) {
+    const Viscous rates = viscous_rates(domain, faces, cut, a, time, u, s);
+    return (*u - of_body(cut.body)) * (rates.regular - rates.cut);
+  }
+  double wall[6], sum = 0;
+  surface_velocity(faces, cut, a, time, wall);
+  for (int link = 0; link < 6; ++link) {
+    if (!(cut.walls >> link & 1U)) continue;
+    const int d = link / 2;
+    const double inside = u[link % 2 ? s[d] : -s[d]];
+    sum += (*u - of_body(cut.of_link[link])) * ((inside - *u) / (h[d] * h[d]) - cut.link[link] * (wall[link] - *u));
+  }
+  return sum;
+}
+
+}  // namespace
+
 PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
                                          const Field &velocity, double *dissipation) {
   PetscFunctionBeginUser;
   EventScope scope(Event::rigid);
-  const Real3 &h = domain.spacing();
   ExactSums sums(1);
   const double cut_faces = for_rigid_rows(domain, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
@@ -193,12 +223,8 @@ PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces 
       const double volume = volume_of_face(domain, a, side_of_face(domain, a, i, j, k));
       if (volume == 0) continue;
       const double *u = velocity[a].row(j, k) + i;
-      const RigidBody &body = faces.bodies[cut->body];
-      const RigidMotion &motion = faces.motions[body.motion];
-      const double of_body = faces.velocity(a, body, face_position(domain, a, i, j, k), h, motion.of_velocity.at(time),
-                                            motion.of_rotation.at(time));
-      const Viscous rates = viscous_rates(domain, faces, *cut, a, time, u, strides(velocity[a]));
-      sums.add(0, volume * (*u - of_body) * (rates.regular - rates.cut));
+      const Real3 place = face_position(domain, a, i, j, k);
+      sums.add(0, volume * excess_at_cut(domain, faces, *cut, a, place, time, u, strides(velocity[a])));
     }
     // Subtract the friction of faces inside on boundaries of the box, where a body has no surface.
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)

@@ -133,12 +133,21 @@ PetscErrorCode InitialState::read_constant(const std::string &name, double value
   PetscFunctionReturn(0);
 }
 
+// A file without the faces on a high boundary, such as a snapshot, does not say what flows through an open one: as much
+// as through the faces before it, until the velocity is made solenoidal.
 PetscErrorCode InitialState::read_flow(State *state) {
+  constexpr double missing = std::numeric_limits<double>::quiet_NaN();
   PetscFunctionBeginUser;
   if (!open_) PetscFunctionReturn(0);
   for (int c = 0; c < domain_->dimension(); ++c) {
     const std::string name = std::string("velocity_") + "xyz"[c];
-    if (file_.has(name)) PetscCall(read(name, at_face[c], finite_numbers, state->velocity[c]));
+    if (!file_.has(name)) continue;
+    const View field = state->velocity[c];
+    for_high_wall(*domain_, at_face[c], c, field, [](double *q) { *q = missing; });
+    PetscCall(read(name, at_face[c], finite_numbers, field));
+    for_high_wall(*domain_, at_face[c], c, field, [&](double *q) {
+      if (std::isnan(*q)) *q = domain_->is_open(c, true) ? q[-field.stride(c)] : 0;
+    });
   }
   if (domain_->dimension() == 2) PetscCall(read_constant("velocity_z", 0));
   if (file_.has("pressure")) PetscCall(read("pressure", at_centre, finite_numbers, state->pressure[0]));

@@ -400,10 +400,14 @@ PetscErrorCode shape_profiles(const Config &config, const Domain &domain, const 
                  ": rigid bodies cover all of this inflow boundary; accepted: a boundary that is partly open";
         PetscFunctionReturn(0);
       }
-      // A flow rate applies to the whole boundary, a velocity is the mean over its open part.
+      // The values of a profile alone are the velocity. A flow rate applies to the whole boundary, a velocity is the
+      // mean over its open part.
       double part = 1;
       if (!config.openings[d][high].velocity.empty()) PetscCall(measure_open_part(domain, phases, d, high, &part));
-      for (double &value : profile) value *= part * double(profile.size()) / sum;
+      const OpeningSpec &opening = config.openings[d][high];
+      const bool is_velocity =
+          !developed && !opening.profile.empty() && opening.velocity.empty() && opening.flow_rate.empty();
+      for (double &value : profile) value *= is_velocity ? 1 : part * double(profile.size()) / sum;
       side.profile = std::make_shared<const InflowProfile>(std::move(profile));
     }
   PetscFunctionReturn(0);

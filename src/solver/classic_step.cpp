@@ -24,7 +24,7 @@ PetscErrorCode ClassicStep::predict(double dt) {
   PetscFunctionBeginUser;
   PetscCall(find_viscosity(&fluid));
   const MomentumStep step{now.time, dt, flow_.speed_scale(dt), {}};
-  fill_ghosts_of_given_pressure(flow_.domain, flow_.sides_now(), now.time + dt, fluid.density, now.velocity,
+  fill_ghosts_of_given_pressure(flow_.domain, flow_.sides_now(), now.time + dt, fluid.inertial_density(), now.velocity,
                                 now.pressure[0]);
   for (FlowPart *part : flow_.parts) PetscCall(part->begin_rate(step));
   PetscCall(predict_velocity(flow_.domain, fluid, step, now.velocity, now.pressure, now.phases, velocity));

@@ -90,8 +90,8 @@ PetscErrorCode FastStep::predict(double dt) {
   PetscCall(find_viscosity(&fluid));
   MomentumStep step{now.time + 0.5 * dt, dt, flow_.speed_scale(dt), {}};
   if (now.dt > 0) step.weights = {1 + 0.5 * dt / now.dt, -0.5 * dt / now.dt};  // Adams-Bashforth 2
-  fill_ghosts_of_given_pressure(flow_.domain, flow_.sides_now(), step.force_time, fluid.density, now.velocity,
-                                now.pressure[0]);
+  fill_ghosts_of_given_pressure(flow_.domain, flow_.sides_now(), step.force_time, fluid.inertial_density(),
+                                now.velocity, now.pressure[0]);
   for (FlowPart *part : flow_.parts) PetscCall(part->begin_rate(step));
   WeightedTarget slope;
   if (flow_.slope) slope = {&flow_.slope, 1 / (0.5 * (now.dt + dt))};

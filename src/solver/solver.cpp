@@ -131,6 +131,7 @@ PetscErrorCode Solver::resume(long stages, long sweeps) {
   PetscFunctionBeginUser;
   scheme_->set_stages(stages);
   sweeps_before_ = sweeps - projection_->solver().sweeps();
+  projection_->solver().forget_sound_speed();  // start_flow() has made a field solenoidal
   PetscCall(flow_->exchange.update_ghosts(now.velocity, Box::stencil_width));
   for (FlowPart *part : flow_->parts) PetscCall(part->begin_resume());
   fill_wall_ghosts_velocity(flow_->domain, flow_->spec.sides, now.time, now.velocity, Box::stencil_width);
