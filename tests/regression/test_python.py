@@ -72,6 +72,16 @@ class OneRun(WithRoom):
         numpy.testing.assert_array_equal(probes.x, [1, 3.5])
         self.assertEqual(probes.velocity_x.shape, (len(run.series), 2))
 
+    def test_probes_that_moved_are_refused(self):
+        case = dict(SHORT, probe_points="1,2,0:3,4,0")
+        run = eulastic.run(CASE, self.room / "run", progress=False, **case)
+        for n, (points, count) in enumerate((("1,2,0:3,5,0", 2), ("1,2,0:3,5,0:1,1,0", 3), ("6,1,0", 1))):
+            case.update(probe_points=points, time_end=1 + n)
+            last, run = run.series.time[-1], eulastic.run(CASE, self.room / "run", progress=False, **case)
+            with self.assertRaisesRegex(ValueError, "positions change in time, as after a restart with other -probe_points"):
+                eulastic.over_time(run.probes)
+            self.assertEqual(eulastic.over_time(run.probes[run.probes.time > last]).velocity_x.shape[1], count)
+
     def test_what_is_wrong_is_said_by_the_program(self):
         with self.assertRaises(eulastic.RunError) as caught:
             eulastic.run(CASE, self.room / "run", progress=False, disc_radios=2)
