@@ -37,8 +37,8 @@ def correlated_rows(deviations):
 def time_average(time, values, since=-numpy.inf, until=numpy.inf):
     """Returns Average(mean, standard_error, correlation_time, independent) of values (nt) at evenly spaced times (nt), such as the
     rows of series.csv. The mean is an integral by the trapezoidal rule. The standard error accounts for the correlation of
-    neighbouring rows; `independent` is the number of independent samples. The error is not a number for less than 4 rows, or if
-    the correlation extends over half of them, as in a developing flow."""
+    neighbouring rows; `independent` is the number of independent samples. With fewer than ten of them, as in a developing flow or a
+    short series, all but the mean are not a number."""
     time, values = numpy.asarray(time, float), numpy.asarray(values, float)
     used = (time >= since) & (time <= until)
     time, values = time[used], values[used]
