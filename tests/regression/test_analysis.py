@@ -296,6 +296,17 @@ class FilesAsTheProgramReadsThem(WithRoom):
         self.assertEqual({name: resolved[name] for name in found}, found)
         self.assertEqual((found["time_end"], found["fluid_viscosity"], found["disc_radius"]), ("4", "0.5", "2"))
 
+    def test_quotes_in_quotes_and_other_bytes(self):
+        case, resolved = self.room / "case.opts", self.room / "resolved.opts"
+        start = b"-grid_cells 16,16,1\n-grid_length 8,8,1\n-fluid_viscosity 1\n-time_end 1\n# Gr\xfc\xdfe\n-output_dir "
+        for written, name in ((rb'"a \"b\" \\ c\d"', r'a "b" \ c\d'), (rb'a\b\\c', r'a\b\\c'), (rb'"end\\"', "end\\"), (rb'"#\"#"', '#"#'),
+                              (b"Z\xfcrich", os.fsdecode(b"Z\xfcrich")), ("Zürich".encode(), "Zürich")):
+            case.write_bytes(start + written + b"\n")
+            done = subprocess.run([os.environ["EULASTIC"], case, "-print_options"], capture_output=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            resolved.write_bytes(done.stdout)
+            self.assertEqual([eulastic.read_options(path)["output_dir"] for path in (case, resolved)], [name, name], written)
+
     def test_what_the_program_refuses(self):
         case = self.room / "case.opts"
         for text, said in (('-output_dir "open\n', "a quote is not closed"), ("-time_end 3 4\n", 'stray word "4"'),
