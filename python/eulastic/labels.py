@@ -17,12 +17,12 @@ def open_run(directory):
 
 
 @contextlib.contextmanager
-def refusing_to_write():
-    """Ends the script with one line where a file cannot be written."""
+def refusing_to_write(path):
+    """Ends the script with one line where a file, this one if the error names none, cannot be written."""
     try:
         yield
     except OSError as error:
-        reason = f"{error.filename} cannot be written: {error.strerror}" if error.filename and error.strerror else error
+        reason = f"{error.filename or path} cannot be written: {error.strerror}" if error.strerror else error
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {reason}; accepted: a place where you may write and with free space")
 
 

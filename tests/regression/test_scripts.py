@@ -265,6 +265,12 @@ class Pictures(WithFolder):
         self.assertEqual(done.returncode, 1, done.stdout)
         self.assertNotIn("t = ", done.stdout)
         self.assertIn("full.png cannot be written", done.stderr)
+        for script, *words, name in (("render", self.directory, "--size", 200, 160, "--movie", "full.gif"), ("make_vessel", "full.h5"),
+                                     ("make_vessel", "full.nrrd"), ("plot", self.directory, "--only", "series", "--output", ".", "plot_series.png")):
+            (self.folder / name).symlink_to("/dev/full")
+            done = start(SCRIPTS / script, *words, *([] if script == "plot" else [name]), cwd=self.folder)
+            self.assertEqual(done.returncode, 1, name)
+            self.assertRegex(done.stderr, rf"\A{script}: {name} cannot be written: No space left on device; accepted[^\n]*\n\Z")
 
     def test_a_run_that_is_not_there_is_one_line(self):
         for script, *words in (("plot", "nosuch"), ("render", "nosuch"), ("run", "nosuch.opts"),
