@@ -37,8 +37,8 @@ def correlated_rows(deviations):
 def time_average(time, values, since=-numpy.inf, until=numpy.inf):
     """Returns Average(mean, standard_error, correlation_time, independent) of values (nt) at evenly spaced times (nt), such as the
     rows of series.csv. The mean is an integral by the trapezoidal rule. The standard error accounts for the correlation of
-    neighbouring rows; `independent` is the number of independent samples. The error is not a number for less than 4 rows, or if
-    the correlation extends over half of them, as in a developing flow."""
+    neighbouring rows; `independent` is the number of independent samples. With fewer than ten of them, as in a developing flow or a
+    short series, all but the mean are not a number."""
     time, values = numpy.asarray(time, float), numpy.asarray(values, float)
     used = (time >= since) & (time <= until)
     time, values = time[used], values[used]
@@ -183,33 +183,47 @@ def first_crossing(fraction, distance):
     return numpy.where(inside.any(axis=1), crossing, numpy.nan)
 
 
+def lumen_radius(run, name):
+    """Returns the radius of the lumen of a tube at the cell centres along its axis; the throat of a constricted tube follows a
+    cosine (docs/method/bodies.md)."""
+    axis, number = "xyz".index(run.options.get(f"{name}_axis", "y")), lambda what: float(run.options[f"{name}_{what}"])
+    radius = numpy.full(run.cells[axis], number("radius"))
+    if run.species[name] == "constricted_tube":
+        s, throat = run.centres(axis) - vector(run, f"{name}_centre")[axis], number("throat_length")
+        depth = (number("radius") - number("throat_radius")) / 2 * (1 + numpy.cos(2 * numpy.pi * s / throat))
+        radius -= numpy.where(2 * abs(s) < throat, depth, 0)
+    return radius
+
+
 def rays_of_tube(run, name):
-    """Returns points (n, m, 3) from the surface of the lumen to its axis, about a cell apart around and along the axis and a quarter
-    of a cell inward, and their distances (m) from the surface."""
-    axis, radius = "xyz".index(run.options.get(f"{name}_axis", "y")), float(run.options[f"{name}_radius"])
-    centre, h = vector(run, f"{name}_centre"), min(run.spacing[:dimension(run)])
-    turns = int(numpy.ceil(2 * numpy.pi * radius / h)) if dimension(run) == 3 else 2
+    """Returns points (n, m, 3) from the surface of the lumen to its axis, at most about a cell apart around and along the axis and a
+    quarter of a cell inward; their distances (m) from the surface, in radii; and the radius of the lumen at each ray (n)."""
+    axis, radii = "xyz".index(run.options.get(f"{name}_axis", "y")), lumen_radius(run, name)
+    centre, h, widest = vector(run, f"{name}_centre"), min(run.spacing[:dimension(run)]), radii.max()
+    flat = dimension(run) == 2 and axis < 2  # a channel in the plane
+    turns = 2 if flat else int(numpy.ceil(2 * numpy.pi * widest / h))
     angle = (numpy.arange(turns) + (0.5 if turns > 2 else 0)) * 2 * numpy.pi / turns
-    distance = numpy.linspace(0, radius, int(numpy.ceil(4 * radius / h)) + 1)
+    distance = numpy.linspace(0, 1, int(numpy.ceil(4 * widest / h)) + 1)
+    from_axis = radii[:, None, None] * (1 - distance)
     first, second = ((1, 2), (2, 0), (0, 1))[axis]
-    if dimension(run) == 2:
+    if flat:
         first, second = (1 - axis, 2)
     points = numpy.empty((run.cells[axis], turns, len(distance), 3))
     points[..., axis] = run.centres(axis)[:, None, None]
-    points[..., first] = centre[first] + numpy.cos(angle)[:, None] * (radius - distance)
-    points[..., second] = centre[second] + numpy.sin(angle)[:, None] * (radius - distance)
-    if dimension(run) == 2:
+    points[..., first] = centre[first] + numpy.cos(angle)[:, None] * from_axis
+    points[..., second] = centre[second] + numpy.sin(angle)[:, None] * from_axis
+    if flat:
         points[..., 2] = run.centres(2)[0]
-    return points.reshape(-1, len(distance), 3), distance
+    return points.reshape(-1, len(distance), 3), distance, numpy.repeat(radii, turns)
 
 
 def layers(run, fraction):
     """Returns {wall: distances of the nearest bodies (n)} in one snapshot."""
     found, periodic = {}, [not run.is_bounded(d) for d in (2, 1, 0)]
     for name in tubes(run):
-        points, distance = rays_of_tube(run, name)
+        points, distance, radii = rays_of_tube(run, name)
         values = sample(fraction, points.reshape(-1, 3) / run.spacing - 0.5, periodic).reshape(points.shape[:2])
-        found[name] = first_crossing(values, distance)
+        found[name] = first_crossing(values, distance) * radii
     if found:
         return found
     for d in range(dimension(run)):
@@ -227,7 +241,7 @@ def layers(run, fraction):
 
 def cell_free_layer(run, species=None, since=-numpy.inf, until=numpy.inf):
     """Returns the thickness of the layer beside the walls without bodies of all moving species, or of one. On a line from every cell
-    of the wall inward, in a tube to its axis, it ends where the solid fraction reaches 1/2; lines without a body do not count.
+    of the wall inward, in a tube along its radius, it ends where the solid fraction reaches 1/2; lines without a body do not count.
 
     The namespace has `time` (nt) of the snapshots; `thickness` (nt), the mean over all walls, and `walls`, {wall: (nt)} for
     each (ymin, ..., NAME_ymax, ... of a slab, or the name of the tube); `mean`, over time; `deviation`, the standard deviation over walls and time

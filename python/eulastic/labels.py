@@ -1,5 +1,6 @@
 """Options, labels with units, and error messages that the scripts for pictures share."""
 import argparse
+import contextlib
 import pathlib
 import re
 import sys
@@ -13,6 +14,16 @@ def open_run(directory):
         return Run(directory)
     except FileNotFoundError as error:
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {error}")
+
+
+@contextlib.contextmanager
+def refusing_to_write(path):
+    """Ends the script with one line where a file, this one if the error names none, cannot be written."""
+    try:
+        yield
+    except OSError as error:
+        reason = f"{error.filename or path} cannot be written: {error.strerror}" if error.strerror else error
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {reason}; accepted: a place where you may write and with free space")
 
 
 def of_column(name):

@@ -13,10 +13,10 @@ def is_name(word):
 
 
 def split_words(line):
-    """Splits a line at blanks. Quotes keep blanks and # in a word; otherwise # begins a comment. ValueError if a quote stays
-    open."""
-    words, inside, quoted = [], False, False
-    for c in line:
+    """Splits a line at blanks. Quotes keep blanks and # in a word, and in them \\" is a quote and \\\\ a backslash; otherwise #
+    begins a comment. ValueError if a quote stays open."""
+    words, inside, quoted, escaped = [], False, False, False
+    for at, c in enumerate(line):
         if not quoted and c in BLANKS:
             inside = False
             continue
@@ -25,7 +25,11 @@ def split_words(line):
                 break
             words.append("")
         inside = True
-        if c == '"':
+        if escaped:
+            words[-1], escaped = words[-1] + c, False
+        elif quoted and c == "\\" and line[at + 1:at + 2] in ('"', "\\"):
+            escaped = True
+        elif c == '"':
             quoted = not quoted
         else:
             words[-1] += c
@@ -58,11 +62,12 @@ def parse_options(words):
 def read_options(path, depth=0):
     """Returns {name without dash: value} of a file of options: lines `-name value`, in which # begins a comment and quotes keep
     blanks. -options_file includes another file, relative to the directory of this one; options of this file override those of the
-    other. ValueError names the file and the line that the program would refuse, too."""
+    other. Bytes that are no UTF-8 are kept as Python keeps them in paths. ValueError names the file and the line that the program
+    would refuse, too."""
     path, own, brought_in = pathlib.Path(path), {}, {}
     if depth > DEPTH_MAX:
         raise ValueError(f"-options_file: {path} includes itself")
-    for number, line in enumerate(path.read_text().split("\n"), 1):
+    for number, line in enumerate(path.read_bytes().decode("utf-8", "surrogateescape").split("\n"), 1):
         try:
             found = pairs(split_words(line))
         except ValueError as error:

@@ -71,7 +71,9 @@ class Snapshot:
         return int(most[(len(most) - 1) // 2])
 
     def fraction_of(self, species):
-        """Returns the solid fraction of one species, (nz, ny, nx)."""
+        """Returns the solid fraction of one species, (nz, ny, nx). KeyError if the run does not have it."""
+        if species not in self.run.species:
+            raise KeyError(f"{self.run.directory}: there is no species {species}; accepted: {', '.join(self.run.species) or 'none'}")
         return self["solid_fraction" + ("_" + species if len(self.run.species) > 1 else "")]
 
     def fraction_of_bodies(self):
@@ -232,9 +234,16 @@ def read_bodies(path):
 
 def over_time(rows):
     """Returns the rows of profiles or probes as arrays over time: time (nt); positions (n), which are constant; every other
-    column (nt, n). A last time with missing rows is left out."""
+    column (nt, n). A last time with missing rows is left out. ValueError if the positions change in time, as they do after a
+    restart with other -probe_points."""
     names = [name for name in rows.dtype.names if name != "time"]
     count = int((rows.time == rows.time[0]).sum()) if len(rows) else 0
+    number = numpy.arange(len(rows)) % max(count, 1)
+    for name in ("time", "x", "y", "z", "probe"):
+        constant = numpy.arange(len(rows)) - number if name == "time" else number
+        if name in rows.dtype.names and (rows[name] != rows[name][constant]).any():
+            raise ValueError("over_time: the positions change in time, as after a restart with other -probe_points; accepted: rows of "
+                             "the same positions, such as rows[rows.time > TIME]")
     whole = rows[:len(rows) // count * count] if count else rows
     arrays = {name: whole[name].reshape(-1, max(count, 1)) for name in names}
     arrays = {name: values[0] if name in ("x", "y", "z", "probe") and len(values) else values for name, values in arrays.items()}

@@ -114,6 +114,7 @@ class Scene(Framed):
         self.window.SetSize(*(size or self.fitting_size()))
 
     def draw(self, snapshot, path):
+        """Draws a snapshot into a PNG file. OSError if it cannot be written."""
         vtk = self.vtk
         renderer = vtk.vtkRenderer()
         renderer.SetBackground(1, 1, 1)
@@ -138,7 +139,10 @@ class Scene(Framed):
         writer = vtk.vtkPNGWriter()
         writer.SetFileName(str(path))
         writer.SetInputConnection(image.GetOutputPort())
+        open(path, "wb").close()  # VTK would not say why it cannot
         writer.Write()
+        if writer.GetErrorCode():
+            raise OSError(f"{path} cannot be written")
 
     def actor(self, renderer, source, rgb, **properties):
         mapper = self.vtk.vtkPolyDataMapper()

@@ -203,6 +203,38 @@ class Walls(WithRoom):
         numpy.testing.assert_allclose(found.walls["vessel"], [0.15, 0.15 + 0.1**2 / (4 * 0.3)], atol=0.02 * h)
         self.assertEqual(found.covered, 1)
 
+    def test_a_core_in_a_throat(self):
+        """A core of radius .1, linear across its surface, is R(x) - .1 from the wall, in 3-D and in 2-D."""
+        for cells, centre in ((20, 40, 40), "0.5,.5,.5"), ((20, 40, 1), "0.5,.5,0"):
+            options = ("-grid_cells {},{},{}\n-grid_length 1,1,1\n-species rbc,vessel\n-rbc_shape sphere\n-vessel_shape constricted_tube\n"
+                       "-vessel_axis x\n-vessel_radius .45\n-vessel_throat_radius .2\n-vessel_throat_length .6\n-vessel_centre {}\n")
+            flat = cells[2] == 1
+            core = lambda x, y, z, t: numpy.clip(0.5 + (0.1 - numpy.hypot(y - 0.5, 0 if flat else z - 0.5)) * 10, 0, 1)
+            z, y, x = numpy.meshgrid(*((numpy.arange(n) + 0.5) / n for n in cells[::-1]), indexing="ij")
+            found = self.layer(options.format(*cells, centre), cells, core, solid_fraction_rbc=lambda t: core(x, y, z, t),
+                               solid_fraction_vessel=lambda t: 0 * x)
+            s = (numpy.arange(20) + .5) / 20 - .5
+            radius = .45 - numpy.where(abs(s) < .3, .125 * (1 + numpy.cos(2 * numpy.pi * s / .6)), 0)
+            numpy.testing.assert_allclose(found.walls["vessel"], radius.mean() - .1, atol=1e-3)
+            self.assertAlmostEqual(found.deviation, radius.std(), delta=1e-3)
+            self.assertEqual(found.covered, 1)
+
+    def test_a_core_in_a_tube_across_the_plane(self):
+        """In 2-D a tube along z is a circle."""
+        core = lambda x, y, z, t: numpy.clip(0.5 + (0.2 - numpy.hypot(x - 0.5, y - 0.5)) * 10, 0, 1)
+        z, y, x = numpy.meshgrid([.5], *2 * [(numpy.arange(60) + .5) / 60], indexing="ij")
+        found = self.layer("-grid_cells 60,60,1\n-grid_length 1,1,1\n-species rbc,vessel\n-rbc_shape sphere\n-vessel_shape tube\n"
+                           "-vessel_axis z\n-vessel_radius .45\n-vessel_centre .5,.5,0\n", (60, 60, 1), core,
+                           solid_fraction_rbc=lambda t: core(x, y, z, t), solid_fraction_vessel=lambda t: 0 * x)
+        numpy.testing.assert_allclose(found.walls["vessel"], 0.25, atol=1e-3)
+        self.assertEqual(found.covered, 1)
+
+    def test_an_unknown_species_is_refused(self):
+        run = self.write("-grid_cells 4,4,1\n-grid_length 1,1,1\n-boundary_y wall\n-species rbc\n-rbc_shape sphere\n", (0.0,),
+                         solid_fraction=lambda t: numpy.zeros((1, 4, 4)))
+        with self.assertRaisesRegex(KeyError, "there is no species red; accepted: rbc"):
+            eulastic.cell_free_layer(run, species="red")
+
     def test_no_wall_and_no_cell(self):
         options = "-grid_cells 4,4,1\n-grid_length 1,1,1\n-species rbc\n-rbc_shape sphere\n"
         with self.assertRaisesRegex(ValueError, "neither a tube nor a wall"):
@@ -263,6 +295,17 @@ class FilesAsTheProgramReadsThem(WithRoom):
         self.assertEqual(found["output_dir"], "my #1 run")
         self.assertEqual({name: resolved[name] for name in found}, found)
         self.assertEqual((found["time_end"], found["fluid_viscosity"], found["disc_radius"]), ("4", "0.5", "2"))
+
+    def test_quotes_in_quotes_and_other_bytes(self):
+        case, resolved = self.room / "case.opts", self.room / "resolved.opts"
+        start = b"-grid_cells 16,16,1\n-grid_length 8,8,1\n-fluid_viscosity 1\n-time_end 1\n# Gr\xfc\xdfe\n-output_dir "
+        for written, name in ((rb'"a \"b\" \\ c\d"', r'a "b" \ c\d'), (rb'a\b\\c', r'a\b\\c'), (rb'"end\\"', "end\\"), (rb'"#\"#"', '#"#'),
+                              (b"Z\xfcrich", os.fsdecode(b"Z\xfcrich")), ("Zürich".encode(), "Zürich")):
+            case.write_bytes(start + written + b"\n")
+            done = subprocess.run([os.environ["EULASTIC"], case, "-print_options"], capture_output=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            resolved.write_bytes(done.stdout)
+            self.assertEqual([eulastic.read_options(path)["output_dir"] for path in (case, resolved)], [name, name], written)
 
     def test_what_the_program_refuses(self):
         case = self.room / "case.opts"

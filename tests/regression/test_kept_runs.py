@@ -101,6 +101,22 @@ class NotReplaced(Kept):
         self.assertEqual(self.script(self.case, run, "-time_end", ".02", "-output_overwrite").returncode, 0)
         self.assertEqual(self.summary("run")["time"], .02)
 
+    def test_script_goes_on_with_other_intervals(self):
+        run = self.room / "run"
+        self.case.write_text(CASE + "-series_interval .0005\n")  # what it would be by default
+        self.environment["PETSC_OPTIONS"] = "-fluid_density 2"
+        self.assertEqual(self.script(self.case, run).returncode, 0)
+        del self.environment["PETSC_OPTIONS"]
+        dense = "-fluid_density", "2"
+        self.assertIn("already", self.script(self.case, run, *dense).stdout)
+        self.refused_by_script(self.case, run, *dense, "-series_interval", ".01", says="is finished and has other options (")
+        self.refused_by_script(self.case, run, *dense, "-pressure_solver", "smac", says="is finished and has other options (")
+        self.refused_by_script(self.case, run, "-time_end", ".12", says="-fluid_density")
+        self.assertIn("goes on", self.script(self.case, run, *dense, "-time_end", ".12").stdout)
+        other = "-series_interval", ".01", "-guard_cfl", "2", "-pressure_solver", "smac", "-load_balance", "-snapshot_fields", "pressure"
+        self.assertIn("goes on", self.script(self.case, run, *dense, *other, "-time_end", ".14").stdout)
+        self.assertEqual((self.summary("run")["time"], self.summary("run")["pressure_solver"]), (.14, "smac"))
+
     def test_finished_and_without_checkpoint(self):
         run = self.room / "run"
         self.assertEqual(self.script(self.case, run, "-checkpoint_keep", "0").returncode, 0)

@@ -1,4 +1,4 @@
-"""scripts/profile: every second of a step is in one share, two runs beside one another, nothing is run twice. Needs EULASTIC."""
+"""scripts/profile: every second of a step is in one share, two runs beside one another, kept runs are replaced. Needs EULASTIC."""
 import importlib.machinery
 import importlib.util
 import pathlib
@@ -54,10 +54,15 @@ class Profile(unittest.TestCase):
             self.assertIn(text, done.stdout)
         picture = matplotlib.image.imread(self.room / "profile.png")[..., :3]
         self.assertGreater((numpy.ptp(picture, axis=2) > 0.3).sum(), 10000)
-        again = start(*command, "--beside", self.room / names[0])
-        self.assertEqual(again.returncode, 0, again.stderr)
-        self.assertEqual(again.stderr.count("holds this run already"), 2)
-        self.assertEqual(again.stdout.splitlines()[:10], done.stdout.splitlines()[:10])
+        for steps in 8, 3:  # more or fewer than the run that is there
+            again = start(*command[:-4], "--steps", steps, "--beside", self.room / names[1], "-grid_cells", "64,64,1")
+            self.assertEqual(again.returncode, 0, again.stderr)
+            one = profile.Profile(self.room / names[0], names[0])
+            self.assertEqual(one.run.summary["steps"], steps)
+            self.assertAlmostEqual(one.seconds / one.run.summary["wall_seconds"], 1, delta=0.5)
+            self.assertIn(f" {steps} steps of {1e3 * one.seconds / steps:.3g} ms", again.stdout)
+            self.assertIn(" 6 steps of ", again.stdout)
+            self.assertNotIn("goes on", again.stderr)
         for wrong in ("--beside", self.room), ("--steps", "0"), ("-nonsense", "1"):
             done = start(SCRIPTS / "profile", case, "--output", self.room / "new", *wrong)
             self.assertEqual(done.returncode, 2, done.stderr)

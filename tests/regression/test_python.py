@@ -72,6 +72,16 @@ class OneRun(WithRoom):
         numpy.testing.assert_array_equal(probes.x, [1, 3.5])
         self.assertEqual(probes.velocity_x.shape, (len(run.series), 2))
 
+    def test_probes_that_moved_are_refused(self):
+        case = dict(SHORT, probe_points="1,2,0:3,4,0")
+        run = eulastic.run(CASE, self.room / "run", progress=False, **case)
+        for n, (points, count) in enumerate((("1,2,0:3,5,0", 2), ("1,2,0:3,5,0:1,1,0", 3), ("6,1,0", 1))):
+            case.update(probe_points=points, time_end=1 + n)
+            last, run = run.series.time[-1], eulastic.run(CASE, self.room / "run", progress=False, **case)
+            with self.assertRaisesRegex(ValueError, "positions change in time, as after a restart with other -probe_points"):
+                eulastic.over_time(run.probes)
+            self.assertEqual(eulastic.over_time(run.probes[run.probes.time > last]).velocity_x.shape[1], count)
+
     def test_what_is_wrong_is_said_by_the_program(self):
         with self.assertRaises(eulastic.RunError) as caught:
             eulastic.run(CASE, self.room / "run", progress=False, disc_radios=2)
@@ -203,6 +213,14 @@ class Package(WithRoom):
         done = subprocess.run(["/usr/bin/python3", "-B", "-c", "import sys\n" + program, CASE], cwd=self.room, env=environment,
                               capture_output=True, text=True)
         self.assertEqual(done.stdout.split(), [str(self.room / "site/eulastic/__init__.py"), "2"], done.stderr)
+        script = self.room / "site/eulastic/shell/run"
+        for name, value, said in (("EULASTIC", None, "the program eulastic is missing; accepted: its path in EULASTIC, or its folder on PATH"),
+                                  ("EULASTIC", "/nosuch", "EULASTIC: /nosuch is missing or no program; accepted: the path of the program eulastic"),
+                                  ("OTHER", "", "there is no case nosuch; accepted: a file of options")):
+            changed = {**environment, "PATH": "/usr/bin:/bin", name: value}
+            done = subprocess.run(["bash", script, "nosuch", "out"], cwd=self.room, capture_output=True, text=True,
+                                  env={name: text for name, text in changed.items() if text is not None})
+            self.assertEqual((done.stdout, done.stderr), ("", f"run: {said}\n"))
 
 
 if __name__ == "__main__":

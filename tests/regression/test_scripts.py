@@ -239,6 +239,39 @@ class Pictures(WithFolder):
                      "stream=codec_name,width,height,duration,nb_read_frames", "-of", "csv=p=0", film)
         self.assertEqual(said.stdout.strip(), "h264,202,160,0.600000,3")  # even numbers, as players need them
 
+    def test_what_cannot_be_written_is_one_line(self):
+        (self.folder / "taken.png").mkdir()
+        (self.folder / "plot_series.png").mkdir()
+        (self.folder / "file").touch()
+        size = "--size", 200, 160
+        for script, *words, reason in (("render", self.directory, *size, "--output", "taken.png", "taken.png cannot be written: Is a directory"),
+                                       ("render", self.directory, *size, "--output", "file/x.png", "Not a directory|File exists"),
+                                       ("render", self.directory, *size, "--output", "x.jpg", "accepted: FILE.png"),
+                                       ("render", self.directory, *size, "--movie", "file", "file cannot be written: File exists"),
+                                       ("render", self.directory, *size, "--movie", "file/x.gif", "Not a directory|File exists"),
+                                       ("plot", self.directory, "--output", "file", "file cannot be written: File exists"),
+                                       ("plot", self.directory, "--output", ".", "plot_series.png cannot be written: Is a directory"),
+                                       ("make_vessel", "nodir/x.h5", "nodir/x.h5 cannot be written: No such file"),
+                                       ("make_vessel", "file/x.stl", "file/x.stl cannot be written: Not a directory")):
+            done = start(SCRIPTS / script, *words, cwd=self.folder)
+            self.assertEqual(done.returncode, 1, words)
+            self.assertRegex(done.stdout + done.stderr, rf"\A{script}: [^\n]*({reason})[^\n]*\n\Z")
+        self.assertFalse((self.folder / "x.jpg").exists())
+
+    @unittest.skipUnless(pathlib.Path("/dev/full").exists(), "a device without free space")
+    def test_a_picture_without_space_is_no_success(self):
+        (self.folder / "full.png").symlink_to("/dev/full")
+        done = start(SCRIPTS / "render", self.directory, "--size", 200, 160, "--output", self.folder / "full.png")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertNotIn("t = ", done.stdout)
+        self.assertIn("full.png cannot be written", done.stderr)
+        for script, *words, name in (("render", self.directory, "--size", 200, 160, "--movie", "full.gif"), ("make_vessel", "full.h5"),
+                                     ("make_vessel", "full.nrrd"), ("plot", self.directory, "--only", "series", "--output", ".", "plot_series.png")):
+            (self.folder / name).symlink_to("/dev/full")
+            done = start(SCRIPTS / script, *words, *([] if script == "plot" else [name]), cwd=self.folder)
+            self.assertEqual(done.returncode, 1, name)
+            self.assertRegex(done.stderr, rf"\A{script}: {name} cannot be written: No space left on device; accepted[^\n]*\n\Z")
+
     def test_a_run_that_is_not_there_is_one_line(self):
         for script, *words in (("plot", "nosuch"), ("render", "nosuch"), ("run", "nosuch.opts"),
                                ("run", "nosuch.opts", self.folder / "x"), ("run", ROOT / "options/disc_in_channel.opts")):
