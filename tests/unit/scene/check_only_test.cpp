@@ -217,6 +217,28 @@ TEST(CheckOnly, LengthsAreTheLumens) {
   EXPECT_NE(circle.find(" (length 3)\n"), std::string::npos) << circle;
 }
 
+TEST(CheckOnly, LengthsAreTheGapsBesideSlabs) {
+  const auto length = [](const std::string &options) {
+    const ParseResult result = parse_line(
+        "-time_end 200 -grid_cells 16,32,1 -grid_length 4,8,1 -body_force 1e-2,0,0 -species a,b -a_shape slab -a_axis "
+        "y -a_law rigid -b_shape slab -b_axis y " +
+        options);
+    EXPECT_EQ(result.error, "");
+    const std::string text = check_report(result.config, 1);
+    const std::size_t begin = text.find(" (length ");
+    return begin == std::string::npos ? text : text.substr(begin, text.find('\n', begin) - begin);
+  };
+  const std::string rigid = "-b_law rigid ", wall = "-boundary_y wall ", below = "-a_interval -1,5 ";
+  EXPECT_EQ(length(wall + rigid + below + "-b_interval 7,8"), " (length 2)");
+  EXPECT_EQ(length(wall + "-b_shear_modulus 1 " + below + "-b_interval 7,8"), " (length 2)") << "elastic and anchored";
+  EXPECT_EQ(length(wall + rigid + below + "-b_interval 5,5.5"), " (length 2.5)");
+  EXPECT_EQ(length(wall + rigid + "-a_interval 3,4 -b_interval 6,6.5"), " (length 3)");
+  EXPECT_EQ(length(rigid + "-a_interval 1,4 -b_interval 5,6"), " (length 3)") << "with its periodic image";
+  EXPECT_EQ(length("-boundary_ymin wall -boundary_ymax symmetry " + rigid + "-a_interval 1,4 -b_interval 5,6.5"),
+            " (length 3)")
+      << "mirrored";
+}
+
 TEST(CheckOnly, HematocritIsOfCells) {
   const auto says = [](const std::string &options) {
     const ParseResult result = parse_line("-time_end 1 -grid_cells 16,16,1 " + options);
