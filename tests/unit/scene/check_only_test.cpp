@@ -155,6 +155,18 @@ TEST(CheckOnly, LumensOfSides) {
   has(nothing, "-v_radius: the lumen is as wide as the box");
 }
 
+// What leaves through an outlet is negative, also where it varies.
+TEST(CheckOnly, SignOfAFlowThatVaries) {
+  const TemporaryFile pulse("time,value\n0,.1\n1,.3\n");
+  const ParseResult result = parse_line("-time_end 1 -grid_cells 16,8,1 -boundary_y wall -boundary_xmin inflow " +
+                                        ("-boundary_xmax outflow -boundary_xmin_velocity " + pulse.path()));
+  ASSERT_EQ(result.error, "");
+  const std::string text = check_report(result.config, 1);
+  for (const char *says : {"; mean velocity up to 0.3, flow rate up to 0.3 into the box",
+                           "; mean velocity up to -0.3, flow rate up to -0.3 into the box"})
+    EXPECT_NE(text.find(says), std::string::npos) << text;
+}
+
 TEST(CheckOnly, WhatCannotFlowIsRefused) {
   const std::string box = "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax outflow ",
                     slab = "-species v -v_shape slab -v_law rigid ", flow = "-boundary_xmin_velocity 1 ";
