@@ -336,6 +336,7 @@ TEST(OptionRefusals, ErrorsNameTheirSource) {
   EXPECT_NE(error("-time_end 1\n-time_step 1x\n").find(":2)"), std::string::npos);
   EXPECT_NE(error("-time_end 1\n-time_end 2\n").find("given twice"), std::string::npos);
   EXPECT_NE(error("-time_end 1\nword\n").find("stray word \"word\""), std::string::npos);
+  EXPECT_NE(error("\xEF\xBB\xBF-time_end 1\nword\n").find("stray word \"word\""), std::string::npos);
   EXPECT_NE(error("-time_end 1 2\n").find("stray word \"2\""), std::string::npos);
   EXPECT_NE(error("-body_force 1, 2, 3\n").find(":1)"), std::string::npos);
   EXPECT_NE(error("-output_dir \"a\n").find("quote"), std::string::npos);
