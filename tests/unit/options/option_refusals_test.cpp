@@ -9,7 +9,7 @@ using namespace eulastic::test;
 
 TEST(OptionRefusals, UnknownNames) {
   expect_refusals(
-      {{"-grid_cels 8,8,8", {"-grid_cels", "nearest known: -grid_cells", "3 integers >= 1"}},
+      {{"-grid_cels 8,8,8", {"-grid_cels", "nearest known: -grid_cells", "at least 3 in x and y"}},
        {"-cell_raduis 1", {"nearest known: -cell_radius"}},
        {"-time_ned 1", {"nearest known: -time_end"}},
        {"-grid_cells=8,8,8", {"-grid_cells=8,8,8", "nearest known: -grid_cells"}},
