@@ -109,6 +109,9 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
   if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
     return "-" + spec.name + "_spontaneous_curvature: requires a bending modulus; accepted: 0, or -" + spec.name +
            "_bending_modulus > 0";
+  if (spec.stretch_force.force == 0 && spec.stretch_force.volume != StretchForce{}.volume)
+    return "-" + spec.name + "_stretch_volume_fraction: requires a force on these ends; accepted: with -" + spec.name +
+           "_stretch_force > 0, or " + to_text(StretchForce{}.volume);
   if (spec.stretch_force.force > 0 && !config.body_series)
     return "-" + spec.name + "_stretch_force: requires labelled bodies; accepted: -body_series true, or 0";
   return {};

@@ -285,6 +285,8 @@ TEST(OptionRefusals, InconsistentScenes) {
         {"-a_stretch_volume_fraction", "> 0 and <= 0.5"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_force 1 -body_series false",
         {"-a_stretch_force", "-body_series true"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_volume_fraction .1",
+        {"-a_stretch_volume_fraction", "-a_stretch_force > 0, or 0.02"}},
        {"-a_shear_modulus 1 -a_stretch_force 1", {"-a_stretch_force", "-a_law membrane or red_cell"}},
        {"-a_law rigid -a_shear_modulus 1", {"-a_shear_modulus", "-a_law neo_hookean"}},
        {"-a_law rigid -a_viscosity 1", {"-a_viscosity", "-a_law neo_hookean or"}},
