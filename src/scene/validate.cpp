@@ -1,5 +1,6 @@
 #include "scene/validate.hpp"
 
+#include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/seeding.hpp"
 #include "field/open_boundaries.hpp"
@@ -13,6 +14,7 @@
 #include "scene/voxels.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -211,6 +213,16 @@ std::string check_placement(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
+// Solids are incompressible, so that det B must be 1; the surface of a membrane may have any area.
+std::string check_initial_volume(const SpeciesSpec &spec) {
+  constexpr double tolerance = 1e-3;
+  const Real3 &stretch = spec.initial_stretch;
+  const double product = stretch[0] * stretch[1] * stretch[2];
+  if (spec.is_membrane() || std::fabs(product - 1) <= tolerance) return {};
+  return "-" + spec.name + "_initial_stretch: the product of the stretches is " + print("%.4g", product) +
+         ", but solids are incompressible; accepted: stretches with a product of 1 within " + to_text(tolerance);
+}
+
 std::string check_material(const Config &config, const SpeciesSpec &spec) {
   const std::string own = "-" + spec.name + "_";
   if (spec.viscosity && config.fluid.viscosity == 0)
@@ -225,7 +237,7 @@ std::string check_material(const Config &config, const SpeciesSpec &spec) {
   if (flat(config) && spec.initial_stretch[2] != 1)
     return own + "initial_stretch: " + to_text(spec.initial_stretch[2]) +
            " along z in 2-D (one cell in z); accepted: 1 along z";
-  return {};
+  return check_initial_volume(spec);
 }
 
 std::string check_contact(const Config &config, const SpeciesSpec &spec) {
