@@ -106,8 +106,9 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
     return law + "-method fast and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
   if (is_anchored(spec.shape) || spec.shape == Shape::cylinder || spec.anchored.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
-  if (!config.initial_state.empty() || spec.shape == Shape::state)
-    return law + "an initial shape, which -initial_state does not contain; accepted: a run without -initial_state";
+  if (spec.shape == Shape::state)
+    return law + "an initial shape at rest, which -initial_state does not contain; accepted: -" + spec.name +
+           "_shape sphere, biconcave, ellipsoid, voxels with a file of velocities, or a run without -initial_state";
   if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
     return "-" + spec.name + "_spontaneous_curvature: requires a bending modulus; accepted: 0, or -" + spec.name +
            "_bending_modulus > 0";
