@@ -46,8 +46,8 @@ public:
   double uncertainty() const { return made_.uncertainty; }
   /// The generated energy as a share of the energy held at an earlier row (at least a hundredth of the largest energy
   /// held before it) plus the throughput since, less the uncertainty, for the row with the largest share; 0 if none was
-  /// generated. Rows of the start are not used, because
-  /// a boundary that starts abruptly supplies energy instantaneously; (36).
+  /// generated. Rows of the start are not used, because a boundary that starts abruptly supplies energy
+  /// instantaneously; (36).
   double generated_share() const { return made_share_; }
   /// The largest generated_share() of all rows.
   double generated_share_max() const { return made_share_max_; }
@@ -71,10 +71,9 @@ private:
   static constexpr int works = 4, energies = 3;
   /// Shares x in (36), each with its own reference row.
   static constexpr std::array<double, 2> shares{0.02, 0.3};
-  /// Made::held is at least this share of the largest energy held so far: when a body comes to rest, the energy decays
-  /// to the errors that the larger energies before have left, and energy made then is to be compared with those.
-  /// Largest energy held, not the sum supplied: that grows with the time that a run is driven, and would excuse more
-  /// and more.
+  /// Made::held is at least this share of the largest energy held so far. When a body comes to rest, the energy decays
+  /// to the errors that larger energies have left, and energy made then is to be compared with those. The sum of all
+  /// energy supplied is not used: it grows with the time for which a run is driven, and would excuse more and more.
   static constexpr double significant = 1e-2;
   double time_ = -1;                               ///< of the last state; negative: none yet
   std::array<double, works> rate_{}, work_{};      ///< supplied, dissipated, elastic, elastic where B is extrapolated
