@@ -27,7 +27,9 @@ void EnergyBudget::advance(double time, const EnergyState &state) {
   time_ = time;
   least_ = std::min({least_, last_[1], 0.0});
   made_.made = -lost();
-  made_.held = last_[0] + (last_[1] - least_) + state.unknown;
+  const double held = last_[0] + (last_[1] - least_) + state.unknown;
+  largest_ = std::max(largest_, held);
+  made_.held = std::max(held, significant * largest_);
   if (started_ == 0) since_.fill(made_);
   if (!begins && !state.starts) started_ = 1;
   compare_made();

@@ -44,9 +44,10 @@ public:
   double throughput() const { return first_[0] + first_[1] + made_.throughput; }
   /// Bound of the error of lost() from the trapezoidal sums, if rates are monotonic between rows.
   double uncertainty() const { return made_.uncertainty; }
-  /// The generated energy as a share of the energy held at an earlier row plus the throughput since, less the
-  /// uncertainty, for the row with the largest share; 0 if none was generated. Rows of the start are not used, because
-  /// a boundary that starts abruptly supplies energy instantaneously; (36).
+  /// The generated energy as a share of the energy held at an earlier row (at least a hundredth of the largest energy
+  /// held before it) plus the throughput since, less the uncertainty, for the row with the largest share; 0 if none was
+  /// generated. Rows of the start are not used, because a boundary that starts abruptly supplies energy
+  /// instantaneously; (36).
   double generated_share() const { return made_share_; }
   /// The largest generated_share() of all rows.
   double generated_share_max() const { return made_share_max_; }
@@ -54,6 +55,8 @@ public:
   /// The numbers that a checkpoint holds: works and energies, and those of generated_share().
   std::vector<double *> numbers();
   std::vector<double *> generated_numbers();
+  /// The largest energy held so far, which older checkpoints do not hold.
+  double *largest_held() { return &largest_; }
 
 private:
   /// Sums since the start at one row.
@@ -61,17 +64,22 @@ private:
     double made = 0;         ///< -lost()
     double uncertainty = 0;  ///< error bound of `made`
     double throughput = 0;   ///< throughput, without the energy at the start
-    double held = 0;         ///< kinetic energy, stored energy above least_, and EnergyState::unknown
+    double held = 0;         ///< kinetic energy, stored energy above least_ and EnergyState::unknown, or its floor
   };
   void compare_made();
 
   static constexpr int works = 4, energies = 3;
   /// Shares x in (36), each with its own reference row.
   static constexpr std::array<double, 2> shares{0.02, 0.3};
+  /// Made::held is at least this share of the largest energy held so far. When a body comes to rest, the energy decays
+  /// to the errors that larger energies have left, and energy made then is to be compared with those. The sum of all
+  /// energy supplied is not used: it grows with the time for which a run is driven, and would excuse more and more.
+  static constexpr double significant = 1e-2;
   double time_ = -1;                               ///< of the last state; negative: none yet
   std::array<double, works> rate_{}, work_{};      ///< supplied, dissipated, elastic, elastic where B is extrapolated
   std::array<double, energies> first_{}, last_{};  ///< kinetic, stored, stored where B is extrapolated
   double least_ = 0;      ///< least elastic and surface energy of all rows, at most 0; negative where det B < 1
+  double largest_ = 0;    ///< largest energy held of all rows
   double exchanged_ = 0;  ///< sum of the absolute powers supplied, that of forces with its bound
   Made made_;             ///< present values
   std::array<Made, shares.size()> since_;  ///< reference rows of (36), one for each share

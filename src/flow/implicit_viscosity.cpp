@@ -1,6 +1,7 @@
 #include "flow/implicit_viscosity.hpp"
 
 #include "base/events.hpp"
+#include "base/one_line.hpp"
 #include "flow/viscous_stress.hpp"
 #include "grid/blocks.hpp"
 #include "pressure/row_sums.hpp"
@@ -84,6 +85,7 @@ PetscErrorCode ImplicitViscosity::create(const Domain &domain, const BoundaryCon
   domain_ = &domain;
   viscosity_ = std::sqrt(least * largest);
   option_ = tolerance;
+  contrast_ = largest / least;
   tolerance_ = std::min(tolerance, 0.1 * std::sqrt(least / largest));
   const int dim = domain.dimension();
   for (int a = 0; a < dim; ++a) {
@@ -298,6 +300,15 @@ PetscErrorCode ImplicitViscosity::second_system(GhostExchange &exchange, const V
   PetscFunctionReturn(0);
 }
 
+// What is accepted instead. A larger -viscous_tolerance helps only where it is not already limited by the contrast.
+std::string ImplicitViscosity::advice(double dt) const {
+  const bool limited = tolerance_ < option_;
+  std::string text = print("the tolerance is %.3g, ", tolerance_);
+  text += limited ? "the most at this contrast of viscosities" : "-viscous_tolerance";
+  text += print("; accepted: a shorter -time_step (now %.3g), a contrast of viscosities below %.3g, ", dt, contrast_);
+  return text + (limited ? "" : "a larger -viscous_tolerance, ") + "or -viscous_scheme rkl";
+}
+
 // Conjugate gradients. Since the V-cycle is not exactly symmetric, they are flexible (Notay 2000): each direction is
 // made conjugate to the one before explicitly.
 PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousStep &step, double part, Size size,
@@ -337,9 +348,9 @@ PetscErrorCode ImplicitViscosity::solve(GhostExchange &exchange, const ViscousSt
   }
   if (size.residual > enough)
     SETERRQ(domain_->comm(), PETSC_ERR_NOT_CONVERGED,
-            "the implicit viscous step did not converge in %d iterations (residual %.3g of the right-hand side); "
-            "accepted: a larger -viscous_tolerance (now %g) or -viscous_scheme rkl",
-            most_iterations, std::sqrt(size.residual / size.right_side), option_);
+            "the implicit viscous step did not converge in %d iterations: the residual is %.3g of the right-hand side, "
+            "and %s",
+            most_iterations, std::sqrt(size.residual / size.right_side), advice(step.dt).c_str());
   PetscFunctionReturn(0);
 }
 

@@ -7,6 +7,7 @@
 #include "pressure/multigrid.hpp"
 
 #include <map>
+#include <string>
 
 namespace eulastic {
 
@@ -54,10 +55,12 @@ private:
   PetscErrorCode second_system(GhostExchange &exchange, const ViscousStep &step, double part, Field &rate,
                                const Field *slope, Field &solution, Size *size);
   PetscErrorCode solve(GhostExchange &exchange, const ViscousStep &step, double part, Size size, Field &solution);
+  std::string advice(double dt) const;  ///< where solve() does not converge
 
   const Domain *domain_ = nullptr;
   double viscosity_ = 0;  ///< of the V-cycles
   double option_ = 0;     ///< -viscous_tolerance
+  double contrast_ = 1;   ///< largest over least viscosity
   double tolerance_ = 0;  ///< of the residual, relative to the right-hand side; smaller for large contrasts
   double flops_ = 0;      ///< of the last step, without the viscous forces
   int products_ = 0;

@@ -1,5 +1,6 @@
 #include "options/option_source.hpp"
 
+#include "base/number_rows.hpp"
 #include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 #include "io/option_values.hpp"
@@ -101,7 +102,7 @@ std::string read_options_file(const std::string &path, std::vector<Source> *sour
   if (!read_file(path, &text))
     return "options file " + path +
            " cannot be read; accepted: one regular file of options and options -name value, lists without spaces";
-  std::istringstream file(text);
+  std::istringstream file(text.substr(byte_order_mark_length(text)));
   Source entries;
   for (int number = 1; std::getline(file, line); ++number) {
     const std::string where = " (" + path + ":" + std::to_string(number) + ")";

@@ -15,7 +15,8 @@ void add_grid(Rows &rows, Config &config) {
   rows.group = "Grid";
   rows.numbers("grid_cells", config.grid.cells.data(), 3, at_least_one, "",
                "number of grid cells along x, y and z; 1 along z selects a 2-D simulation, in which the z coordinate "
-               "of bodies is ignored");
+               "of bodies is ignored")
+      .accepted = "3 integers separated by commas: at least 3 in x and y, 1 (2-D) or at least 3 in z";
   rows.real("grid_length", config.grid.length, positive, "length", "edge lengths of the box along x, y and z");
   rows.may_change = true;
   for (int d = 0; d < 3; ++d) {

@@ -174,7 +174,7 @@ void add_surface_and_forces(Rows &rows, SpeciesSpec &spec) {
   rows.real("initial_stretch", spec.initial_stretch, positive, "",
             "initial principal stretches l along the axes of the body, which -NAME_orientation rotates by R: the left "
             "Cauchy-Green tensor is R diag(l^2) R^T, for a membrane its part along the surface; -NAME_shape is the "
-            "stretched shape");
+            "stretched shape; the product is 1, except for membranes");
 }
 
 void add_contact(Rows &rows, SpeciesSpec &spec) {

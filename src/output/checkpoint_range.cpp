@@ -39,8 +39,8 @@ std::string find_invalid(const std::string &name, const std::vector<long> &value
 }
 
 std::string find_invalid_number(const CheckpointNumbers &numbers) {
-  static const std::set<std::string> never_negative{"time",         "time_step", "flow_scales",
-                                                    "wall_seconds", "mach_max",  "pressure_interval"};
+  static const std::set<std::string> never_negative{"time",     "time_step",         "flow_scales",   "wall_seconds",
+                                                    "mach_max", "pressure_interval", "energy_largest"};
   const Accepted zero_or_more{0, largest, "a number >= 0"};
   std::string wrong;
   for (const auto &[name, values] : numbers.reals) {

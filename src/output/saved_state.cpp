@@ -58,6 +58,8 @@ void take_numbers(const CheckpointNumbers &numbers, const CarriedState &state) {
     for (std::size_t n = 0; n < places.size(); ++n) *places[n] = numbers.integers.at(name)[n];
 }
 
+constexpr const char *largest_name = "energy_largest";
+
 // What a run carries beside the solver.
 void add_position(bool has_bonds, RunPosition *position, CarriedState *state) {
   OutputsPosition &o = position->outputs;
@@ -67,6 +69,7 @@ void add_position(bool has_bonds, RunPosition *position, CarriedState *state) {
   state->reals["mach_max"] = {&o.mach_max};
   state->reals["energy_budget"] = o.energy.numbers();
   state->reals["energy_made"] = o.energy.generated_numbers();
+  state->reals[largest_name] = {o.energy.largest_held()};
   state->integers["stages_and_sweeps"] = {&position->stages, &position->sweeps};
   state->integers["output_rows"] = {&o.series_rows, &o.bodies_rows, &o.snapshots};
   if (has_bonds) state->integers["bond_rows"] = {&o.bonds.bonds, &o.bonds.events};
@@ -297,9 +300,11 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   }
   PetscCall(require_range(domain, path, find_invalid("forgotten", forgotten, any_count)));
   solver->state().forgotten = forgotten.empty() ? 0 : forgotten[0];
+  const bool has_largest = file->has(largest_name);  // else it begins with the energy held at the next row
   CarriedState state;
   PetscCall(solver->carry(&state));
   add_position(solver->part<Adhesion>() != nullptr, position, &state);
+  if (!has_largest) state.reals.erase(largest_name);
   const CheckpointNumbers expected = numbers_of(state);
   CheckpointNumbers numbers = expected;
   PetscCall(file->read_numbers(&numbers));
@@ -314,6 +319,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(solver->carry(&state));  // the phases lie elsewhere now
   PetscCall(file->read_fields(domain, state.fields));
   add_position(solver->part<Adhesion>() != nullptr, position, &state);
+  if (!has_largest) state.reals.erase(largest_name);
   take_numbers(numbers, state);
   PetscCall(load_markers(file, path, solver));
   PetscCall(solver->resume(position->stages, position->sweeps));

@@ -5,8 +5,10 @@
 #include "scene/lumens.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace eulastic {
 namespace {
@@ -45,10 +47,34 @@ public:
 private:
   bool is_wall(int d) const { return d < dimension_ && config_.grid.boundary[d] == Boundary::wall; }
 
-  // Between walls, those that planes of symmetry mirror included; 0 where there is none.
+  // Slabs normal to direction d that stay where they are, as far as they lie in the box, from the low side on.
+  std::vector<std::array<double, 2>> slabs(int d) const {
+    std::vector<std::array<double, 2>> all;
+    for (const SpeciesSpec &spec : config_.species) {
+      const bool fixed = spec.law == Law::rigid || spec.material().anchored;
+      if (spec.shape != Shape::slab || spec.axis != d || !fixed || spec.motion.velocity[d] != 0) continue;
+      all.push_back({std::max(spec.interval[0], 0.0), std::min(spec.interval[1], config_.grid.length[d])});
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  // The largest one between neighbouring walls and slabs; 0 where there is none. Planes of symmetry, and other sides
+  // without a wall, mirror what is beside them; between periodic sides the last slab is beside the image of the first.
   double gap(int d) const {
-    const int walls = d < dimension_ ? config_.boundary.is_wall(d, 0) + config_.boundary.is_wall(d, 1) : 0;
-    return walls == 0 ? 0 : (walls == 1 ? 2 : 1) * config_.grid.length[d];
+    if (d >= dimension_) return 0;
+    const double length = config_.grid.length[d];
+    const std::array<bool, 2> wall{config_.boundary.is_wall(d, 0), config_.boundary.is_wall(d, 1)};
+    const auto inside = slabs(d);
+    if (inside.empty()) return wall[0] && wall[1] ? length : wall[0] || wall[1] ? 2 * length : 0;
+    double widest = 0, end = inside[0][1];
+    for (const auto &slab : inside) {
+      widest = std::max(widest, slab[0] - end);
+      end = std::max(end, slab[1]);
+    }
+    const double low = inside[0][0], high = length - end;
+    if (!config_.boundary.bounded(d)) return std::max(widest, low + high);
+    return std::max({widest, (wall[0] ? 1 : 2) * low, (wall[1] ? 1 : 2) * high});
   }
 
   // A fluid without walls or bodies moves uniformly.
@@ -90,7 +116,9 @@ private:
       const WallMotion &low = config_.sides[d][0].motion, &high = config_.sides[d][1].motion;
       for (int c = 0; c < dimension_; ++c) {
         scale_.speed[c] = std::max({scale_.speed[c], std::fabs(low.velocity[c]), std::fabs(high.velocity[c])});
-        rate_ = std::max(rate_, std::fabs(high.velocity[c] - low.velocity[c]) / config_.grid.length[d]);
+        const double across = slabs(d).empty() ? std::fabs(high.velocity[c] - low.velocity[c])
+                                               : std::max(std::fabs(low.velocity[c]), std::fabs(high.velocity[c]));
+        if (gap(d) > 0) rate_ = std::max(rate_, across / std::min(gap(d), config_.grid.length[d]));
       }
     }
   }

@@ -187,6 +187,10 @@ PetscErrorCode InitialState::read_phase(const SpeciesSpec &species, int first_la
     PetscCall(
         fail("dataset solid_fraction is missing; accepted: a file with this dataset, or -" + species.name + "_shape"));
   if (!open_) PetscFunctionReturn(0);
+  if (species.is_membrane() && holds(species))
+    PetscCall(fail("the file has a solid fraction or a strain of " + species.name +
+                   ", whose membrane needs the shape at rest; accepted: a file with velocities and pressure, or "
+                   "without -initial_state"));
   if (!fraction.empty()) {
     PetscCall(read(fraction, at_centre, zero_to_one, phase->fraction[0]));
     for_points(domain_->rows(),

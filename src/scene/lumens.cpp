@@ -43,6 +43,11 @@ bool flow_through(const Config &config, int d, int high, std::array<double, 2> *
 
 double largest(const std::array<double, 2> &range) { return std::max(std::fabs(range[0]), std::fabs(range[1])); }
 
+// The value of largest size, with its sign: what leaves through an outlet is negative.
+double of_largest_size(const std::array<double, 2> &range) {
+  return std::fabs(range[0]) > std::fabs(range[1]) ? range[0] : range[1];
+}
+
 double reynolds_number(const Config &config, int d, int high) {
   const OpenPart &part = config.open_parts[d][high];
   const double nu = config.fluid.kinematic_viscosity();
@@ -67,7 +72,7 @@ std::string side_line(const Config &config, int d, int high) {
   std::array<double, 2> flow;
   if (!flow_through(config, d, high, &flow)) return line + "; the flow through it is unknown";
   const std::string up_to = flow[0] == flow[1] ? "" : "up to ";
-  const auto value = [&](double per) { return up_to + number((flow[0] == flow[1] ? flow[0] : largest(flow)) * per); };
+  const auto value = [&](double per) { return up_to + number(of_largest_size(flow) * per); };
   line += "; mean velocity " + value(1 / part.area) + ", flow rate " + value(1) + " into the box";
   if (const double reynolds = reynolds_number(config, d, high); reynolds > 0)
     line += ", Reynolds number of the lumen " + up_to + number(reynolds, 3);

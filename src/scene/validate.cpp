@@ -1,5 +1,6 @@
 #include "scene/validate.hpp"
 
+#include "base/one_line.hpp"
 #include "base/rank_zero.hpp"
 #include "bodies/seeding.hpp"
 #include "field/open_boundaries.hpp"
@@ -13,6 +14,7 @@
 #include "scene/voxels.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -104,11 +106,15 @@ std::string check_membrane(const Config &config, const SpeciesSpec &spec) {
     return law + "-method fast and -interface_scheme plic; accepted here: neo_hookean, mooney_rivlin, rigid";
   if (is_anchored(spec.shape) || spec.shape == Shape::cylinder || spec.anchored.value_or(false))
     return law + "a closed surface; accepted: -" + spec.name + "_shape sphere, biconcave, ellipsoid, voxels";
-  if (!config.initial_state.empty() || spec.shape == Shape::state)
-    return law + "an initial shape, which -initial_state does not contain; accepted: a run without -initial_state";
+  if (spec.shape == Shape::state)
+    return law + "an initial shape at rest, which -initial_state does not contain; accepted: -" + spec.name +
+           "_shape sphere, biconcave, ellipsoid, voxels with a file of velocities, or a run without -initial_state";
   if (spec.membrane.spontaneous_curvature != 0 && spec.membrane.bending_modulus == 0)
     return "-" + spec.name + "_spontaneous_curvature: requires a bending modulus; accepted: 0, or -" + spec.name +
            "_bending_modulus > 0";
+  if (spec.stretch_force.force == 0 && spec.stretch_force.volume != StretchForce{}.volume)
+    return "-" + spec.name + "_stretch_volume_fraction: requires a force on these ends; accepted: with -" + spec.name +
+           "_stretch_force > 0, or " + to_text(StretchForce{}.volume);
   if (spec.stretch_force.force > 0 && !config.body_series)
     return "-" + spec.name + "_stretch_force: requires labelled bodies; accepted: -body_series true, or 0";
   return {};
@@ -208,6 +214,16 @@ std::string check_placement(const Config &config, const SpeciesSpec &spec) {
   return {};
 }
 
+// Solids are incompressible, so that det B must be 1; the surface of a membrane may have any area.
+std::string check_initial_volume(const SpeciesSpec &spec) {
+  constexpr double tolerance = 1e-3;
+  const Real3 &stretch = spec.initial_stretch;
+  const double product = stretch[0] * stretch[1] * stretch[2];
+  if (spec.is_membrane() || std::fabs(product - 1) <= tolerance) return {};
+  return "-" + spec.name + "_initial_stretch: the product of the stretches is " + print("%.4g", product) +
+         ", but solids are incompressible; accepted: stretches with a product of 1 within " + to_text(tolerance);
+}
+
 std::string check_material(const Config &config, const SpeciesSpec &spec) {
   const std::string own = "-" + spec.name + "_";
   if (spec.viscosity && config.fluid.viscosity == 0)
@@ -222,7 +238,7 @@ std::string check_material(const Config &config, const SpeciesSpec &spec) {
   if (flat(config) && spec.initial_stretch[2] != 1)
     return own + "initial_stretch: " + to_text(spec.initial_stretch[2]) +
            " along z in 2-D (one cell in z); accepted: 1 along z";
-  return {};
+  return check_initial_volume(spec);
 }
 
 std::string check_contact(const Config &config, const SpeciesSpec &spec) {

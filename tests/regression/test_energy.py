@@ -72,6 +72,15 @@ class Budget(SceneCase):
 
 
 class MadeEnergy(Restart):
+    def test_at_rest_nothing_is_made(self):
+        """A stretched disc in a fluid that nothing drives: its energy decays to a millionth, of which errors are any share."""
+        rest = ("-grid_cells 32,32,1 -species a -a_shape sphere -a_radius .3 -a_shear_modulus 1 -a_initial_stretch 1.1,.90909090909,1 "
+                "-fluid_viscosity .05 -time_end 8 -output_dir rest").split()
+        result = self.call(*rest)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertLess(self.summary("rest")["energy_made_share"], .02)
+        self.assertEqual(verdicts(self.summary("rest"))["energy"], "fine")
+
     def test_beside_a_rigid_body_that_travels_it_stops_too(self):
         species = CAPSULE.index("-species") + 1
         ball = ("-ball_law rigid -ball_shape sphere -ball_radius .8 -ball_centre 2.5,3,0 -ball_velocity .1,0,0 -ball_velocity_angular_frequency 5 "

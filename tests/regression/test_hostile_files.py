@@ -105,7 +105,7 @@ MEMBRANE = ("-grid_cells 16,16,1 -grid_length 2,2,1 -boundary_xmin pressure -bou
             "-a_law membrane -a_surface_shear_modulus .1 -b_shape sphere -b_radius .3 -b_centre 1.3,.4,0 -b_shear_modulus 1 "
             "-b_viscosity 1 -time_end 100 -time_step .01 -guard_volume_drift 0").split()
 # What a run has beside the state: clocks, counts, and what has been written of it.
-BESIDE = {"options", "wall_seconds", "output_times", "output_rows", "energy_budget", "energy_made", "mach_max", "stages_and_sweeps"}
+BESIDE = {"options", "wall_seconds", "output_times", "output_rows", "energy_budget", "energy_made", "energy_largest", "mach_max", "stages_and_sweeps"}
 
 
 class EveryDataset(Restart):

@@ -92,6 +92,17 @@ class InitialState(WithRoom):
         numpy.testing.assert_array_equal(run.snapshots[0]["velocity_x"], u)
         self.assertAlmostEqual(run.summary["bodies"][0]["volume"], numpy.pi * 0.04, delta=1e-5)
 
+    def test_a_membrane_is_placed_by_the_options_in_a_flow_of_a_file(self):
+        u = numpy.broadcast_to(((numpy.arange(20) + 0.5) / 20)[:, None], Z).copy()
+        membrane = ("-species cell -cell_shape sphere -cell_radius .3 -cell_law membrane -cell_surface_shear_modulus 1 -time_end 1e-9 "
+                    "-snapshot_interval 1 -snapshot_precision double").split()
+        run = self.run_case(*GRID, *membrane, *self.file(velocity_x=u))
+        numpy.testing.assert_array_equal(run.snapshots[0]["velocity_x"], u)
+        self.assertAlmostEqual(run.summary["bodies"][0]["volume"], numpy.pi * 0.09, delta=1e-4)
+        self.refused(*GRID, *membrane, *self.file(solid_fraction=numpy.zeros(Z)), says=["state.h5", "shape at rest", "velocities"])
+        del membrane[membrane.index("-cell_shape"):membrane.index("-cell_law")]
+        self.refused(*GRID, *membrane, *self.file(velocity_x=u), says=["-cell_law", "-cell_shape sphere"])
+
     def test_two_bodies_of_a_file(self):
         phi, body = numpy.zeros(Z), numpy.zeros(Z, int)
         phi[0, 5:9, 5:9], phi[0, 12:16, 22:], phi[0, 12:16, :2] = 1, 1, 1  # the second across x = 0

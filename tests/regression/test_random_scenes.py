@@ -56,7 +56,7 @@ def body(dice, name, lengths, axes):
     else:
         options |= {"law": "mooney_rivlin", "c1": "0.05", "c2": "0.02", "c3": dice.choice(("0", "0.1"))}
     if dice.random() < 0.2:
-        options["initial_stretch"] = "1.2,0.9,1"
+        options["initial_stretch"] = "1.2,0.833333333,1"
     return [word for key, value in options.items() for word in (f"-{name}_{key}", value)]
 
 

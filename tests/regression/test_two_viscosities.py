@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""Free elastic discs with a viscosity of their own in shear between plates: how they are deformed, and their inclination."""
+"""Free elastic discs with a viscosity of their own in shear between plates: how they are deformed, and their inclination; and what is
+said where the implicit viscous step does not converge."""
 import pathlib
 import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
+from restart_case import Restart  # noqa: E402
 from scene_case import SceneCase  # noqa: E402
 
 DISC = ("-boundary_y wall -boundary_ymin_velocity -.2,0,0 -boundary_ymax_velocity .2,0,0 -fluid_viscosity 1 -fluid_density .1 -initial_velocity "
@@ -30,6 +32,18 @@ class FreeDisc(SceneCase):
                 print(f"    mu_s/mu_f = {viscosity}, {cells} cells per radius: deformation {off[0]:+.4f}, inclination {off[1]:+.2f} degrees off")
                 for value, bound in zip(off, bounds):
                     self.assertLess(abs(value), bound, (viscosity, cells))
+
+
+class NoConvergence(Restart):
+    def test_advice_helps(self):
+        """A larger -viscous_tolerance is named only where the contrast does not limit it."""
+        case = "-grid_cells 32,32,1 -fluid_viscosity .05 -time_end .05 -species a -a_shape sphere -a_radius .4 -a_shear_modulus 1".split()
+        for options, limited in (("-a_viscosity 1e5", True), ("-a_viscosity .1 -viscous_tolerance 1e-200", False)):
+            result = self.call(*case, *options.split(), "-output_dir", "run", "-output_overwrite")
+            self.assertEqual(result.returncode, 1, result.stderr)
+            for says in ("did not converge", "a shorter -time_step", "a contrast of viscosities below", "or -viscous_scheme rkl"):
+                self.assertIn(says, result.stderr)
+            self.assertEqual("-viscous_tolerance" in result.stderr, not limited, result.stderr)
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ FEATURES = {
           "pressure": "-boundary_y wall -boundary_ymax pressure -boundary_ymax_pressure .1"},
     "bodies": {
         "none": None, "solid": f"{BALL} -cell_shear_modulus .6", "mooney_rivlin": f"{BALL} -cell_law mooney_rivlin -cell_c1 .2 "
-        "-cell_c2 .1 -cell_c3 .1", "stretched": f"{BALL} -cell_shear_modulus .5 -cell_initial_stretch 1.1,.9,1",
+        "-cell_c2 .1 -cell_c3 .1", "stretched": f"{BALL} -cell_shear_modulus .5 -cell_initial_stretch 1.1,.909090909,1",
         "viscous solid": f"{BALL} -cell_shear_modulus .5 -cell_viscosity 3",
         "drop": f"{BALL} -cell_shear_modulus 0 -cell_surface_tension .4 -cell_viscosity .3",
         "membrane": f"{BALL} -cell_law membrane -cell_surface_shear_modulus .2",

@@ -9,7 +9,7 @@ using namespace eulastic::test;
 
 TEST(OptionRefusals, UnknownNames) {
   expect_refusals(
-      {{"-grid_cels 8,8,8", {"-grid_cels", "nearest known: -grid_cells", "3 integers >= 1"}},
+      {{"-grid_cels 8,8,8", {"-grid_cels", "nearest known: -grid_cells", "at least 3 in x and y"}},
        {"-cell_raduis 1", {"nearest known: -cell_radius"}},
        {"-time_ned 1", {"nearest known: -time_end"}},
        {"-grid_cells=8,8,8", {"-grid_cells=8,8,8", "nearest known: -grid_cells"}},
@@ -285,7 +285,10 @@ TEST(OptionRefusals, InconsistentScenes) {
         {"-a_stretch_volume_fraction", "> 0 and <= 0.5"}},
        {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_force 1 -body_series false",
         {"-a_stretch_force", "-body_series true"}},
+       {"-a_law membrane -a_surface_shear_modulus 1 -a_stretch_volume_fraction .1",
+        {"-a_stretch_volume_fraction", "-a_stretch_force > 0, or 0.02"}},
        {"-a_shear_modulus 1 -a_stretch_force 1", {"-a_stretch_force", "-a_law membrane or red_cell"}},
+       {"-a_shear_modulus 1 -a_initial_stretch 2,1,1", {"-a_initial_stretch", "product", "is 2", "within 0.001"}},
        {"-a_law rigid -a_shear_modulus 1", {"-a_shear_modulus", "-a_law neo_hookean"}},
        {"-a_law rigid -a_viscosity 1", {"-a_viscosity", "-a_law neo_hookean or"}},
        {"-a_law rigid -a_body_force 1,0,0", {"-a_body_force", "-a_law neo_hookean or"}},
@@ -320,6 +323,8 @@ TEST(OptionRefusals, TwoDimensions) {
         {"-a_initial_stretch", "without a modulus", "-a_shear_modulus > 0"}},
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 1,1,2",
         {"-a_initial_stretch", "2-D"}},
+       {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_initial_stretch 2,1,1",
+        {"-a_initial_stretch", "product", "within 0.001"}},
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement lattice -a_count 1,1,2",
         {"-a_count", "2-D"}},
        {"-species a -a_shape sphere -a_radius .1 -a_shear_modulus 1 -a_placement random -a_count 1,1,2",
@@ -336,6 +341,7 @@ TEST(OptionRefusals, ErrorsNameTheirSource) {
   EXPECT_NE(error("-time_end 1\n-time_step 1x\n").find(":2)"), std::string::npos);
   EXPECT_NE(error("-time_end 1\n-time_end 2\n").find("given twice"), std::string::npos);
   EXPECT_NE(error("-time_end 1\nword\n").find("stray word \"word\""), std::string::npos);
+  EXPECT_NE(error("\xEF\xBB\xBF-time_end 1\nword\n").find("stray word \"word\""), std::string::npos);
   EXPECT_NE(error("-time_end 1 2\n").find("stray word \"2\""), std::string::npos);
   EXPECT_NE(error("-body_force 1, 2, 3\n").find(":1)"), std::string::npos);
   EXPECT_NE(error("-output_dir \"a\n").find("quote"), std::string::npos);

@@ -258,7 +258,7 @@ TEST(Options, TextReadsBackTheSame) {
           " -pressure_solver ksp -pressure_ksp_rtol 1e-8 -pressure_ksp_monitor "
           "-pressure_pc_gamg_threshold -1 -pressure_mg_levels_pc_type sor -log_view",
       ("-time_end 1 -species a,b -a_shape slab -a_interval 0,.5 -a_axis x -a_shear_modulus 2 -b_shape "
-       "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 3 -b_initial_stretch 1.5,1,1"),
+       "ellipsoid -b_semi_axes .1,.2,.3 -b_shear_modulus 3 -b_initial_stretch 1.5,1,.6666666667"),
       "-time_end 1 -species a -a_shape sphere -a_radius .2 -a_law mooney_rivlin -a_c1 4 -a_c3 .6"};
   for (const std::string &line : scenes) {
     const ParseResult first = parse_line(line);

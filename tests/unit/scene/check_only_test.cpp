@@ -155,6 +155,18 @@ TEST(CheckOnly, LumensOfSides) {
   has(nothing, "-v_radius: the lumen is as wide as the box");
 }
 
+// What leaves through an outlet is negative, also where it varies.
+TEST(CheckOnly, SignOfAFlowThatVaries) {
+  const TemporaryFile pulse("time,value\n0,.1\n1,.3\n");
+  const ParseResult result = parse_line("-time_end 1 -grid_cells 16,8,1 -boundary_y wall -boundary_xmin inflow " +
+                                        ("-boundary_xmax outflow -boundary_xmin_velocity " + pulse.path()));
+  ASSERT_EQ(result.error, "");
+  const std::string text = check_report(result.config, 1);
+  for (const char *says : {"; mean velocity up to 0.3, flow rate up to 0.3 into the box",
+                           "; mean velocity up to -0.3, flow rate up to -0.3 into the box"})
+    EXPECT_NE(text.find(says), std::string::npos) << text;
+}
+
 TEST(CheckOnly, WhatCannotFlowIsRefused) {
   const std::string box = "-time_end 1 -grid_cells 16,16,1 -boundary_xmin inflow -boundary_xmax outflow ",
                     slab = "-species v -v_shape slab -v_law rigid ", flow = "-boundary_xmin_velocity 1 ";
@@ -215,6 +227,28 @@ TEST(CheckOnly, LengthsAreTheLumens) {
       "-grid_cells 16,16,1 -grid_length 4,4,1 -v_axis z -v_radius 1.5 -initial_velocity "
       "uniform -initial_velocity_mean 1,0,0");
   EXPECT_NE(circle.find(" (length 3)\n"), std::string::npos) << circle;
+}
+
+TEST(CheckOnly, LengthsAreTheGapsBesideSlabs) {
+  const auto length = [](const std::string &options) {
+    const ParseResult result = parse_line(
+        "-time_end 200 -grid_cells 16,32,1 -grid_length 4,8,1 -body_force 1e-2,0,0 -species a,b -a_shape slab -a_axis "
+        "y -a_law rigid -b_shape slab -b_axis y " +
+        options);
+    EXPECT_EQ(result.error, "");
+    const std::string text = check_report(result.config, 1);
+    const std::size_t begin = text.find(" (length ");
+    return begin == std::string::npos ? text : text.substr(begin, text.find('\n', begin) - begin);
+  };
+  const std::string rigid = "-b_law rigid ", wall = "-boundary_y wall ", below = "-a_interval -1,5 ";
+  EXPECT_EQ(length(wall + rigid + below + "-b_interval 7,8"), " (length 2)");
+  EXPECT_EQ(length(wall + "-b_shear_modulus 1 " + below + "-b_interval 7,8"), " (length 2)") << "elastic and anchored";
+  EXPECT_EQ(length(wall + rigid + below + "-b_interval 5,5.5"), " (length 2.5)");
+  EXPECT_EQ(length(wall + rigid + "-a_interval 3,4 -b_interval 6,6.5"), " (length 3)");
+  EXPECT_EQ(length(rigid + "-a_interval 1,4 -b_interval 5,6"), " (length 3)") << "with its periodic image";
+  EXPECT_EQ(length("-boundary_ymin wall -boundary_ymax symmetry " + rigid + "-a_interval 1,4 -b_interval 5,6.5"),
+            " (length 3)")
+      << "mirrored";
 }
 
 TEST(CheckOnly, HematocritIsOfCells) {
