@@ -209,6 +209,28 @@ double excess_at_cut(const Domain &domain, const RigidFaces &faces, const RigidF
   return sum;
 }
 
+// Half of the sum of ((u - u_beside) / h)^2 over neighbours of a face inside a body that are inside another one: there
+// is no fluid between the two that the difference would shear. The other half belongs to the neighbours.
+double shear_between_bodies(const Domain &domain, const RigidFaces &faces, int a, const RigidFaces::Run &run, int i,
+                            int j, int k, const Field &velocity) {
+  const Strides s = strides(velocity[a]);
+  const double *u = velocity[a].row(j, k) + i;
+  double sum = 0;
+  for (int link = 0; link < 2 * domain.dimension(); ++link) {
+    const int d = link / 2, step = link % 2 ? 1 : -1;
+    const double difference = (u[step * s[d]] - *u) / domain.spacing()[d];
+    if (difference == 0) continue;
+    Int3 beside{i, j, k};
+    beside[d] += step;
+    const RigidFaces::Row row = faces.row(a, beside[1], beside[2]);
+    for (const RigidFaces::Run *other = row.runs; other != row.runs_end; ++other)
+      if (other->begin <= beside[0] && beside[0] < other->end &&
+          faces.bodies[other->body].index != faces.bodies[run.body].index)
+        sum += 0.5 * difference * difference;
+  }
+  return sum;
+}
+
 }  // namespace
 
 PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces &faces, const Fluid &fluid, double time,
@@ -216,6 +238,7 @@ PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces 
   PetscFunctionBeginUser;
   EventScope scope(Event::rigid);
   ExactSums sums(1);
+  const bool several = faces.moves && faces.count > 1;
   const double cut_faces = for_rigid_rows(domain, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
     for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
       const int i = cut->i;
@@ -234,6 +257,10 @@ PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces 
           sums.add(0, volume_of_face(domain, a, side_of_face(domain, a, i, j, k)) * of_body *
                           laplacian_of_sides(domain, a, i, j, k, velocity[a]));
       }
+    for (const RigidFaces::Run *run = row.runs; several && run != row.runs_end; ++run)
+      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.points_end(0, a == 0)); ++i)
+        sums.add(0, -volume_of_face(domain, a, side_of_face(domain, a, i, j, k)) *
+                        shear_between_bodies(domain, faces, a, *run, i, j, k, velocity));
   });
   scope.flops(cut_faces * (viscous_rates_flops(domain.dimension()) + 10));
   PetscCall(sums.reduce(domain.comm(), dissipation));

@@ -29,6 +29,13 @@ class Balances(SceneCase):
             for power in row.wall_power, row.viscous_dissipation:
                 self.assertAlmostEqual(power, 1 / .0625 + 1 / .6, delta=1e-5, msg=f"along {other}")
 
+    def test_two_slabs_that_touch_shear_no_fluid_between_them(self):
+        """They slide with 1 and -1; the fluid in the rest of the period, .6, has the shear rate 2 / .6."""
+        row = self.last("touch", *BOX, *("-time_end 2 -species s,u -s_shape slab -s_axis y -s_interval .1,.3 -s_law rigid -s_velocity 1,0,0 "
+                                         "-u_shape slab -u_axis y -u_interval .3,.5 -u_law rigid -u_velocity -1,0,0").split())
+        for power in row.wall_power, row.viscous_dissipation:
+            self.assertAlmostEqual(power, 4 / .6, delta=1e-4)
+
     def test_a_piston_in_a_tube_along_x_and_y(self):
         """The same scene with exchanged axes has the same dissipation, and its energy budget closes."""
         found = []
