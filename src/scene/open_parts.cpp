@@ -1,7 +1,9 @@
 #include "scene/open_parts.hpp"
 
+#include "bodies/labels.hpp"
 #include "bodies/volume_fraction.hpp"
 #include "io/option_values.hpp"
+#include "openings/leaving.hpp"
 #include "scene/voxels.hpp"
 
 #include <algorithm>
@@ -207,6 +209,26 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
   return {};
 }
 
+// Solid that is not rigid may not begin beside a boundary that fluid crosses: a run would stop there at once. Bodies
+// that not every rank knows are left to the run.
+std::string check_soft(const Config &config, std::size_t s, int d, int high) {
+  const SpeciesSpec &spec = config.species[s];
+  const bool known = spec.bears_load() || spec.material().anchored || spec.shape == Shape::cylinder;
+  if (spec.law == Law::rigid || spec.shape == Shape::state || !known) return {};
+  CellWindow cells(config.grid, {}, config.grid.cells);
+  const int layers = std::min(free_layers, config.grid.cells[d]);
+  cells.begin[d] = high ? config.grid.cells[d] - layers : 0;
+  cells.size[d] = layers;
+  const Int3 &n = cells.size;
+  std::vector<double> solid(std::size_t(n[0]) * n[1] * n[2]);
+  if (std::string wrong = fill(config, s, cells, {solid.data(), n[0], std::ptrdiff_t(n[0]) * n[1]}); !wrong.empty())
+    return wrong;
+  if (*std::max_element(solid.begin(), solid.end()) <= BodyCells::threshold) return {};
+  return "-" + spec.name + "_shape: a body that is not rigid is within " + std::to_string(free_layers) +
+         " cells of the open boundary " + side_name(d, high != 0) + "; accepted: -" + spec.name +
+         "_law rigid, a body that ends further inside, or boundaries that are periodic or walls where it reaches them";
+}
+
 }  // namespace
 
 std::string measure_open_parts(Config *config) {
@@ -214,6 +236,8 @@ std::string measure_open_parts(Config *config) {
   std::string wrong;
   std::array<std::array<bool, 2>, 3> closed{};
   for_crossed_sides(*config, [&](int d, int high) {
+    if (!wrong.empty()) return;
+    for (std::size_t s = 0; s < config->species.size() && wrong.empty(); ++s) wrong = check_soft(*config, s, d, high);
     if (!wrong.empty()) return;
     bool known = true;
     SideCells cells(*config, d, high);

@@ -178,6 +178,19 @@ TEST(SceneRefusals, RigidBodiesThatTurnInPlace) {
                   "-time_end 1 -grid_cells 20,20,1 -a_law rigid ");
 }
 
+// Only rigid vessels may have open ends.
+TEST(SceneRefusals, ElasticVesselsAtOpenBoundaries) {
+  const std::string open =
+      "-time_end 1 -grid_cells 16,16,16 -boundary_zmin inflow -boundary_zmin_flow_rate 1 -boundary_zmax pressure "
+      "-species v -v_axis z ";
+  EXPECT_EQ(parse_line(open + "-v_shape tube -v_radius .4 -v_law rigid").error, "");
+  EXPECT_EQ(parse_line(open + "-v_shape slab -v_interval .4,.6 -v_shear_modulus 1").error, "");
+  expect_refusals({{"-v_shape tube -v_radius .4", {"-v_shape: ", "open boundary zmin", "accepted: -v_law rigid"}},
+                   {"-v_shape slab -v_interval .4,.9", {"-v_shape: ", "open boundary zmax"}},
+                   {"-v_shape cylinder -v_radius .2", {"-v_shape: ", "open boundary zmin"}}},
+                  open + "-v_shear_modulus 1 ");
+}
+
 TEST(SceneRefusals, PathsOfRigidBodies) {
   const std::string ball =
       "-time_end 1 -grid_cells 20,20,20 -boundary_y wall -species a,b -a_law rigid -a_shape sphere "
