@@ -168,6 +168,18 @@ bool is_closed(const Config &config, const SideCells &cells, int d, int high) {
   return !(std::fabs(sum) > 0);
 }
 
+// A rigid slab stops fluid where faces of the grid across its axis are inside it: it needs one, also while it moves. On
+// a boundary that is not periodic the slab may be thinner, as the boundary is closed without it.
+bool is_too_thin(const Config &config, const SpeciesSpec &slab) {
+  constexpr double on_surface = 1e-9;  // in cells: a face so close to the surface is outside
+  const double spacing = config.grid.spacing(slab.axis);
+  const double low = slab.interval[0] / spacing, high = slab.interval[1] / spacing;
+  const bool bounded = config.grid.boundary[slab.axis] == Boundary::wall;
+  if (bounded && (low <= 0 || high >= config.grid.cells[slab.axis])) return false;
+  if (slab.travels(config.grid.dimension())) return high - low < 1 - on_surface;
+  return std::floor(low + on_surface) + 1 >= high - on_surface;
+}
+
 std::string check_slabs(const Config &config) {
   for (const SpeciesSpec &spec : config.species) {
     const double length = config.grid.length[spec.axis];
@@ -175,6 +187,11 @@ std::string check_slabs(const Config &config) {
       return "-" + spec.name +
              "_interval: the rigid slab fills all of the box and leaves no fluid; accepted: a part of 0," +
              to_text(length);
+    if (spec.law == Law::rigid && spec.shape == Shape::slab && is_too_thin(config, spec))
+      return "-" + spec.name +
+             "_interval: the rigid slab holds no face of the grid, so that fluid passes through it; accepted: at "
+             "least " +
+             to_text(config.grid.spacing(spec.axis)) + " long, one cell, with a multiple of it inside";
   }
   return {};
 }

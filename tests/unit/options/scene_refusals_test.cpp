@@ -145,6 +145,9 @@ TEST(SceneRefusals, RigidBodiesThatMove) {
         {"-a_angular_velocity", "or rotates through the grid"}},
        {"-a_shape slab -a_interval .3,.5 -a_axis y -a_velocity 0,1,0 -boundary_y wall",
         {"-a_velocity", "cannot leave"}},
+       {"-a_shape slab -a_axis y -a_interval .26,.37 -a_velocity 0,1,0",
+        {"-a_interval: the rigid slab holds no face", "accepted: at least 0.125"}},
+       {"-a_shape slab -a_axis y -a_interval .25,.375", {"-a_interval: the rigid slab holds no face"}},
        {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
         {"-a_velocity", "boundaries of the box"}}},
       "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");
