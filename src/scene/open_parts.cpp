@@ -180,6 +180,20 @@ bool is_too_thin(const Config &config, const SpeciesSpec &slab) {
   return std::floor(low + on_surface) + 1 >= high - on_surface;
 }
 
+// A slab across the box must not cut off an inlet at one of its ends, unless boundaries beside the slab are open.
+std::string check_cut_off(const Config &config, const SpeciesSpec &slab) {
+  bool beside = config.grid.boundary[slab.axis] == Boundary::periodic;
+  std::string inlet;
+  for_crossed_sides(config, [&](int d, int high) {
+    beside = beside || d != slab.axis;
+    if (config.sides[d][high].kind == BoundaryKind::inflow) inlet = side_name(d, high != 0);
+  });
+  if (beside || inlet.empty()) return {};
+  return "-" + slab.name + "_interval: the rigid slab cuts the inflow boundary " + inlet +
+         " off from all boundaries through which the inflow could leave; accepted: bodies that leave a way for the "
+         "fluid";
+}
+
 std::string check_slabs(const Config &config) {
   for (const SpeciesSpec &spec : config.species) {
     const double length = config.grid.length[spec.axis];
@@ -194,6 +208,13 @@ std::string check_slabs(const Config &config) {
              to_text(config.grid.spacing(spec.axis)) + " long, one cell, with a multiple of it inside";
   }
   return {};
+}
+
+std::string check_cuts(const Config &config) {
+  std::string wrong;
+  for (const SpeciesSpec &spec : config.species)
+    if (wrong.empty() && spec.law == Law::rigid && spec.shape == Shape::slab) wrong = check_cut_off(config, spec);
+  return wrong;
 }
 
 // Inflow must be able to leave.
@@ -263,7 +284,8 @@ std::string measure_open_parts(Config *config) {
     config->open_parts[d][high] = cells.measure();
     closed[d][high] = is_closed(*config, cells, d, high);
   });
-  return wrong.empty() ? check_way(*config, closed) : wrong;
+  if (wrong.empty()) wrong = check_way(*config, closed);
+  return wrong.empty() ? check_cuts(*config) : wrong;
 }
 
 }  // namespace eulastic

@@ -181,6 +181,14 @@ TEST(SceneRefusals, RigidBodiesThatTurnInPlace) {
                   "-time_end 1 -grid_cells 20,20,1 -a_law rigid ");
 }
 
+TEST(SceneRefusals, SlabsThatCutOffAnInlet) {
+  const std::string slab =
+      "-time_end 1 -grid_cells 24,16,1 -boundary_xmin inflow -boundary_xmin_velocity 1 -boundary_xmax pressure "
+      "-species s -s_shape slab -s_axis x -s_interval .3,.6 -s_law rigid ";
+  EXPECT_EQ(parse_line(slab + "-boundary_ymin wall -boundary_ymax pressure").error, "");
+  expect_refusals({{"-boundary_y wall", {"-s_interval: the rigid slab cuts", "xmin", "accepted: "}}}, slab);
+}
+
 // Only rigid vessels may have open ends.
 TEST(SceneRefusals, ElasticVesselsAtOpenBoundaries) {
   const std::string open =
