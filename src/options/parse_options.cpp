@@ -209,6 +209,8 @@ std::string read_sources_once(std::vector<Source> *sources, Config *config, std:
   for (const SpeciesSpec &spec : config->species)
     if (spec.law == Law::red_cell)
       for (const auto &[name, value] : red_cell_preset()) reader.preset(spec.name + "_" + name, value);
+  // Before the options of a boundary, which would be refused for a kind that they do have.
+  if (std::string wrong = check_single_sides(*config); !wrong.empty()) return wrong;
   if (std::string wrong = reader.check_given(lost); !wrong.empty()) return wrong;
   if (std::string wrong = check_petsc_entries(*sources, *config, had_ksp, lost); !wrong.empty()) return wrong;
   for (SpeciesSpec &spec : config->species) {

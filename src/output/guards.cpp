@@ -73,7 +73,9 @@ PetscErrorCode Guards::before_step(const Solver &solver, const FlowExtremes &ext
   stop->reason = "guard";
   stop->message =
       where(state, place) +
-      (still ? print("the time step %.3g is too short to change the time; check the units or set -time_step", dt)
+      (still ? print("the time step %.3g is too short to change the time; check the units and that bodies leave "
+                     "a way from inlets to outlets, or set -time_step",
+                     dt)
              : print("CFL number %.4g, the sum of |v_i| dt/h_i, is above -guard_cfl %g; lower -time_step "
                      "(%.3g now)",
                      courant, control_.cfl, dt));

@@ -1,7 +1,9 @@
 #include "scene/open_parts.hpp"
 
+#include "bodies/labels.hpp"
 #include "bodies/volume_fraction.hpp"
 #include "io/option_values.hpp"
+#include "openings/leaving.hpp"
 #include "scene/voxels.hpp"
 
 #include <algorithm>
@@ -166,6 +168,32 @@ bool is_closed(const Config &config, const SideCells &cells, int d, int high) {
   return !(std::fabs(sum) > 0);
 }
 
+// A rigid slab stops fluid where faces of the grid across its axis are inside it: it needs one, also while it moves. On
+// a boundary that is not periodic the slab may be thinner, as the boundary is closed without it.
+bool is_too_thin(const Config &config, const SpeciesSpec &slab) {
+  constexpr double on_surface = 1e-9;  // in cells: a face so close to the surface is outside
+  const double spacing = config.grid.spacing(slab.axis);
+  const double low = slab.interval[0] / spacing, high = slab.interval[1] / spacing;
+  const bool bounded = config.grid.boundary[slab.axis] == Boundary::wall;
+  if (bounded && (low <= 0 || high >= config.grid.cells[slab.axis])) return false;
+  if (slab.travels(config.grid.dimension())) return high - low < 1 - on_surface;
+  return std::floor(low + on_surface) + 1 >= high - on_surface;
+}
+
+// A slab across the box must not cut off an inlet at one of its ends, unless boundaries beside the slab are open.
+std::string check_cut_off(const Config &config, const SpeciesSpec &slab) {
+  bool beside = config.grid.boundary[slab.axis] == Boundary::periodic;
+  std::string inlet;
+  for_crossed_sides(config, [&](int d, int high) {
+    beside = beside || d != slab.axis;
+    if (config.sides[d][high].kind == BoundaryKind::inflow) inlet = side_name(d, high != 0);
+  });
+  if (beside || inlet.empty()) return {};
+  return "-" + slab.name + "_interval: the rigid slab cuts the inflow boundary " + inlet +
+         " off from all boundaries through which the inflow could leave; accepted: bodies that leave a way for the "
+         "fluid";
+}
+
 std::string check_slabs(const Config &config) {
   for (const SpeciesSpec &spec : config.species) {
     const double length = config.grid.length[spec.axis];
@@ -173,8 +201,20 @@ std::string check_slabs(const Config &config) {
       return "-" + spec.name +
              "_interval: the rigid slab fills all of the box and leaves no fluid; accepted: a part of 0," +
              to_text(length);
+    if (spec.law == Law::rigid && spec.shape == Shape::slab && is_too_thin(config, spec))
+      return "-" + spec.name +
+             "_interval: the rigid slab holds no face of the grid, so that fluid passes through it; accepted: at "
+             "least " +
+             to_text(config.grid.spacing(spec.axis)) + " long, one cell, with a multiple of it inside";
   }
   return {};
+}
+
+std::string check_cuts(const Config &config) {
+  std::string wrong;
+  for (const SpeciesSpec &spec : config.species)
+    if (wrong.empty() && spec.law == Law::rigid && spec.shape == Shape::slab) wrong = check_cut_off(config, spec);
+  return wrong;
 }
 
 // Inflow must be able to leave.
@@ -207,6 +247,26 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
   return {};
 }
 
+// Solid that is not rigid may not begin beside a boundary that fluid crosses: a run would stop there at once. Bodies
+// that not every rank knows are left to the run.
+std::string check_soft(const Config &config, std::size_t s, int d, int high) {
+  const SpeciesSpec &spec = config.species[s];
+  const bool known = spec.bears_load() || spec.material().anchored || spec.shape == Shape::cylinder;
+  if (spec.law == Law::rigid || spec.shape == Shape::state || !known) return {};
+  CellWindow cells(config.grid, {}, config.grid.cells);
+  const int layers = std::min(free_layers, config.grid.cells[d]);
+  cells.begin[d] = high ? config.grid.cells[d] - layers : 0;
+  cells.size[d] = layers;
+  const Int3 &n = cells.size;
+  std::vector<double> solid(std::size_t(n[0]) * n[1] * n[2]);
+  if (std::string wrong = fill(config, s, cells, {solid.data(), n[0], std::ptrdiff_t(n[0]) * n[1]}); !wrong.empty())
+    return wrong;
+  if (*std::max_element(solid.begin(), solid.end()) <= BodyCells::threshold) return {};
+  return "-" + spec.name + "_shape: a body that is not rigid is within " + std::to_string(free_layers) +
+         " cells of the open boundary " + side_name(d, high != 0) + "; accepted: -" + spec.name +
+         "_law rigid, a body that ends further inside, or boundaries that are periodic or walls where it reaches them";
+}
+
 }  // namespace
 
 std::string measure_open_parts(Config *config) {
@@ -215,6 +275,8 @@ std::string measure_open_parts(Config *config) {
   std::array<std::array<bool, 2>, 3> closed{};
   for_crossed_sides(*config, [&](int d, int high) {
     if (!wrong.empty()) return;
+    for (std::size_t s = 0; s < config->species.size() && wrong.empty(); ++s) wrong = check_soft(*config, s, d, high);
+    if (!wrong.empty()) return;
     bool known = true;
     SideCells cells(*config, d, high);
     wrong = cells.subtract_rigid(&known);
@@ -222,7 +284,8 @@ std::string measure_open_parts(Config *config) {
     config->open_parts[d][high] = cells.measure();
     closed[d][high] = is_closed(*config, cells, d, high);
   });
-  return wrong.empty() ? check_way(*config, closed) : wrong;
+  if (wrong.empty()) wrong = check_way(*config, closed);
+  return wrong.empty() ? check_cuts(*config) : wrong;
 }
 
 }  // namespace eulastic

@@ -32,13 +32,6 @@ std::string check_grid(const Config &config) {
   GridSpec serial = config.grid;
   serial.processors = {0, 0, 0};
   if (const std::string reason = Domain::refusal_reason(serial, 1); !reason.empty()) return reason;
-  for (int d = 0; d < 3; ++d) {
-    const std::string name = std::string("-boundary_") + "xyz"[d];
-    for (int high = 0; high < 2; ++high)
-      if (!config.boundary.bounded(d) && config.boundary.side[d][high] != SideChoice::same)
-        return name + (high ? "max" : "min") + ": a single boundary cannot be periodic; accepted: same, or with " +
-               name + (high ? "min" : "max") + " or " + name;
-  }
   if (flat(config) && config.grid.boundary[2] == Boundary::wall)
     return "-boundary_z: a boundary needs more than one cell in z; accepted in 2-D: periodic";
   double cells = 1;
@@ -336,6 +329,17 @@ std::string check_restart(const Config &config) {
 }
 
 }  // namespace
+
+std::string check_single_sides(const Config &config) {
+  for (int d = 0; d < 3; ++d) {
+    const std::string name = std::string("-boundary_") + "xyz"[d];
+    for (int high = 0; high < 2; ++high)
+      if (!config.boundary.bounded(d) && config.boundary.side[d][high] != SideChoice::same)
+        return name + (high ? "max" : "min") + ": a single boundary cannot be periodic; accepted: same, or with " +
+               name + (high ? "min" : "max") + " or " + name;
+  }
+  return {};
+}
 
 std::string validate(Config *whole) {
   const Config &config = *whole;

@@ -24,6 +24,8 @@ TEST(SceneRefusals, SidesThatVolumeCrosses) {
        {in + "inflow -boundary_xmin_velocity 1 -boundary_xmax_velocity -1 -boundary_xmax_angular_frequency 2",
         {"cannot leave"}},
        {"-boundary_xmin inflow", {"-boundary_xmin: a single boundary"}},
+       {"-boundary_xmin inflow -boundary_xmin_velocity 1", {"-boundary_xmin: a single boundary"}},
+       {"-boundary_xmax pressure -boundary_xmax_pressure 1", {"-boundary_xmax: a single boundary"}},
        {"-boundary_xmin_velocity 1",
         {"-boundary_xmin_velocity: applies only with -boundary_xmin wall or inflow, or -boundary_x wall"}},
        {way + "-boundary_xmax_pressure 1", {"-boundary_xmax_pressure: applies only with -boundary_xmax pressure"}},
@@ -143,9 +145,61 @@ TEST(SceneRefusals, RigidBodiesThatMove) {
         {"-a_angular_velocity", "or rotates through the grid"}},
        {"-a_shape slab -a_interval .3,.5 -a_axis y -a_velocity 0,1,0 -boundary_y wall",
         {"-a_velocity", "cannot leave"}},
+       {"-a_shape slab -a_axis y -a_interval .26,.37 -a_velocity 0,1,0",
+        {"-a_interval: the rigid slab holds no face", "accepted: at least 0.125"}},
+       {"-a_shape slab -a_axis y -a_interval .25,.375", {"-a_interval: the rigid slab holds no face"}},
        {"-a_shape tube -a_radius .2 -a_axis x -a_velocity 1,0,0 -boundary_x wall",
         {"-a_velocity", "boundaries of the box"}}},
       "-time_end 1 -grid_cells 8,8,8 -species a -a_law rigid ");
+}
+
+// Those that turn in place have surfaces that move, too.
+TEST(SceneRefusals, RigidBodiesThatTurnInPlace) {
+  const std::string disc =
+      "-time_end 1 -grid_cells 20,20,1 -boundary_y wall -species a,b -a_law rigid -a_shape cylinder -a_axis z "
+      "-a_radius .1 -b_law rigid -b_shape cylinder -b_axis z -b_radius .1 ";
+  EXPECT_EQ(parse_line(disc + "-b_centre .7,.7,.5 -a_centre .3,.15,.5").error, "");  // at rest
+  EXPECT_EQ(parse_line(disc + "-b_centre .7,.7,.5 -a_centre .3,.3,.5 -a_angular_velocity 0,0,1").error, "");
+  expect_refusals(
+      {{"-b_centre .7,.7,.5 -a_centre .3,.125,.5",
+        {"-a_angular_velocity: rotates a body that reaches y = 0.02", "between 0.1 and 0.9"}},
+       {"-b_centre .7,.7,.5 -a_centre .48,.7,.5",
+        {"-a_angular_velocity: rotates a body within a cell of one of b", "accepted: a cell"}},
+       {"-a_placement lattice -a_count 4,1,1 -b_centre .7,.85,.5", {"rotates a body within a cell of one of a"}},
+       {"-b_centre .7,.7,.5 -a_centre .1,.125,.5 -a_velocity 1,0,0",
+        {"-a_velocity: moves a body that reaches y = 0.02"}}},
+      disc + "-a_angular_velocity 0,0,1 ");
+  expect_refusals({{"-a_radius .1 -a_centre .3,.7,.5 -a_angular_velocity 0,0,1 -a_shape cylinder -a_axis z -species "
+                    "a,b -b_law rigid "
+                    "-b_shape slab -b_axis x -b_interval .41,.6",
+                    {"-a_angular_velocity: rotates a body within a cell of one of b"}},
+                   {"-a_radius .49 -a_shape cylinder -a_axis z -a_angular_velocity 0,0,1 -species a",
+                    {"-a_angular_velocity: the body reaches 0.49", "accepted: below 0.475"}},
+                   {"-a_shape slab -a_axis x -a_interval .3,.5 -a_velocity 1,0,0 -species a -boundary_ymin inflow "
+                    "-boundary_ymin_velocity 1 -boundary_ymax pressure",
+                    {"-a_velocity: moves a body that covers a part of the inflow boundary ymin", "accepted: 0,0,0"}}},
+                  "-time_end 1 -grid_cells 20,20,1 -a_law rigid ");
+}
+
+TEST(SceneRefusals, SlabsThatCutOffAnInlet) {
+  const std::string slab =
+      "-time_end 1 -grid_cells 24,16,1 -boundary_xmin inflow -boundary_xmin_velocity 1 -boundary_xmax pressure "
+      "-species s -s_shape slab -s_axis x -s_interval .3,.6 -s_law rigid ";
+  EXPECT_EQ(parse_line(slab + "-boundary_ymin wall -boundary_ymax pressure").error, "");
+  expect_refusals({{"-boundary_y wall", {"-s_interval: the rigid slab cuts", "xmin", "accepted: "}}}, slab);
+}
+
+// Only rigid vessels may have open ends.
+TEST(SceneRefusals, ElasticVesselsAtOpenBoundaries) {
+  const std::string open =
+      "-time_end 1 -grid_cells 16,16,16 -boundary_zmin inflow -boundary_zmin_flow_rate 1 -boundary_zmax pressure "
+      "-species v -v_axis z ";
+  EXPECT_EQ(parse_line(open + "-v_shape tube -v_radius .4 -v_law rigid").error, "");
+  EXPECT_EQ(parse_line(open + "-v_shape slab -v_interval .4,.6 -v_shear_modulus 1").error, "");
+  expect_refusals({{"-v_shape tube -v_radius .4", {"-v_shape: ", "open boundary zmin", "accepted: -v_law rigid"}},
+                   {"-v_shape slab -v_interval .4,.9", {"-v_shape: ", "open boundary zmax"}},
+                   {"-v_shape cylinder -v_radius .2", {"-v_shape: ", "open boundary zmin"}}},
+                  open + "-v_shear_modulus 1 ");
 }
 
 TEST(SceneRefusals, PathsOfRigidBodies) {
