@@ -191,7 +191,7 @@ double excess_at_cut(const Domain &domain, const RigidFaces &faces, const RigidF
     const RigidMotion &motion = faces.motions[body.motion];
     return faces.velocity(a, body, place, h, motion.of_velocity.at(time), motion.of_rotation.at(time));
   };
-  bool same = true;
+  bool same = true;  // one body at all links: the sum is that of (28), as links without a surface cancel
   for (int link = 0; link < 6; ++link)
     same = same && (!(cut.walls >> link & 1U) || faces.bodies[cut.of_link[link]].index == faces.bodies[cut.body].index);
   if (same) {
