@@ -426,9 +426,9 @@ PetscErrorCode FreeBodies::membrane_force(MembraneMechanics &membrane, const Bod
   std::vector<double> bending_energy;
   PetscCall(membrane.for_force_rows(
       phase,
-      [&](int part, bool bending, int a, int j, int k, double *added) {
+      [&](int part, int a, int j, int k, double *added) {
         add_force_row(n, added, 0, force[a].row(j, k), nullptr);
-        if (!of_step || !bending || !drifts_) return;
+        if (!of_step || !drifts_) return;
         for (int i = 0; i < n; ++i) added[i] *= scale;
         net_force_.add_row(box, part, a, added);
       },

@@ -32,8 +32,8 @@ struct Curvature {
   View sum, weight;  // by Scratch
   std::ptrdiff_t stride[3];
 
-  Curvature(const Box &g, const Phase &phase, Field &fields)
-      : box(g), phi(phase.fraction[0]), sum(fields[weighted]), weight(fields[Scratch::weight]) {
+  Curvature(const Box &g, ConstView fraction, Field &fields)
+      : box(g), phi(fraction), sum(fields[weighted]), weight(fields[Scratch::weight]) {
     for (int d = 0; d < 3; ++d) stride[d] = phi.stride(d);
   }
 
@@ -113,7 +113,7 @@ EULASTIC_INLINE void average_neighbours(const Curvature &c, const Segment *begin
 
 // The force on faces of component d in the band of a phase: calls add(i, force) for each face of a segment.
 struct Faces {
-  const Curvature &curvature;
+  Curvature curvature;
   int d;
   double factor;  // scale sigma/h
 
@@ -133,7 +133,7 @@ struct Faces {
 };
 
 EULASTIC_CLONES void force_row(const Faces &faces, const Segment &s, double *force) {
-  faces.row(s, [=](int i, double f) EULASTIC_BODY { force[i] = f; });
+  faces.row(s, [=](int i, double f) EULASTIC_BODY { force[i] += f; });
 }
 
 EULASTIC_CLONES void power_row(const Faces &faces, const Segment &s, const double *v, double *power) {
@@ -164,16 +164,17 @@ void for_owned(const Box &box, const ActiveSegments &band, int j, int k, const W
 }  // namespace
 
 // The curvature is found in the cells of the band, including one ghost layer.
-PetscErrorCode CapillaryForce::find(const Phase &phase, Field &work) {
+PetscErrorCode CapillaryForce::find(const Phase &phase, ConstView phi, Field &work) {
   PetscFunctionBeginUser;
   EventScope scope(Event::surface_tension);
   const Box &box = *box_;
   const bool flat = box.dimension() == 2;
   const int parts = row_parts(box);
   phase_ = &phase;
+  phi_ = phi;
   work_ = work.part(0, work_fields);
-  band_.build_band(box, phase.fraction[0], phase.rows, 1);
-  const Curvature curvature(box, phase, work_);
+  band_.build_band(box, phi, phase.rows, 1);
+  const Curvature curvature(box, phi, work_);
   clear_work();
   std::vector<long> counted(parts);
   const std::vector<Segment> &band = band_.all();
@@ -213,20 +214,23 @@ void CapillaryForce::clear_work() {
   });
 }
 
+void CapillaryForce::add_to_row(double tension, int d, int j, int k, double *force) {
+  const Faces faces{Curvature(*box_, phi_, work_), d, tension / box_->spacing()[d]};
+  for_owned(*box_, band_, j, k, [&](const Segment &s) { force_row(faces, s, force); });
+}
+
 void CapillaryForce::add_force(double scale, Field &force, const WeightedTarget &slope, NetForce *net) {
   EventScope scope(Event::surface_tension);
   const Box &box = *box_;
   const int dim = box.dimension(), n = box.cells()[0];
   const double sigma = phase_->material.surface_tension;
-  const Curvature curvature(box, *phase_, work_);
   in_row_parts(box, [&](const RowPart &part) {
     std::vector<double> added(n);
     for (int d = 0; d < dim; ++d) {
-      const Faces faces{curvature, d, scale * sigma / box.spacing()[d]};
       for_rows_in_blocks(part, [&](int j, int k) {
         if (band_.idle(j, k)) return;
         std::fill(added.begin(), added.end(), 0.0);
-        for_owned(box, band_, j, k, [&](const Segment &s) { force_row(faces, s, added.data()); });
+        add_to_row(scale * sigma, d, j, k, added.data());
         add_force_row(n, added.data(), slope.factor, force[d].row(j, k),
                       slope.field ? (*slope.field)[d].row(j, k) : nullptr);
         net->add_row(box, part.number, d, added.data());
@@ -241,7 +245,7 @@ void CapillaryForce::measure(const Field &velocity, int first_sum, std::vector<E
   const Box &box = *box_;
   const int dim = box.dimension(), n = box.cells()[0], first = box.layout().begin[0];
   const double sigma = phase_->material.surface_tension;
-  const Curvature curvature(box, *phase_, work_);
+  const Curvature curvature(box, phi_, work_);
   in_row_parts(box, [&](const RowPart &part) {
     std::vector<double> given(n), cut(n);
     for (const Segment &row : part.rows(box)) {
@@ -251,7 +255,7 @@ void CapillaryForce::measure(const Field &velocity, int first_sum, std::vector<E
       for_owned(box, band_, row.j, row.k, [&](const Segment &s) {
         for (int d = 0; d < dim; ++d)
           power_row({curvature, d, sigma / box.spacing()[d]}, s, velocity[d].row(row.j, row.k), given.data());
-        const double *q = phase_->fraction[0].row(row.j, row.k);
+        const double *q = phi_.row(row.j, row.k);
         for (int i = s.i_begin; i < s.i_end; ++i) cut[i] = (dim == 2 ? area_at<2> : area_at<3>)(curvature, q + i);
       });
       (*sum)[part.number].add_row(first_sum + power, given.data(), n, first);

@@ -30,12 +30,16 @@ public:
 
   /// Computes the curvature of the surface of a phase. All later calls refer to this phase and to `work`, work_fields
   /// components, until the next find(). Collective on the grid.
-  PetscErrorCode find(const Phase &phase, Field &work);
+  PetscErrorCode find(const Phase &phase, Field &work) { return find(phase, phase.fraction[0], work); }
+  /// The same for a copy of the phi of the phase that differs behind boundaries.
+  PetscErrorCode find(const Phase &phase, ConstView phi, Field &work);
   /// A superset of the faces with a force, one ghost layer included.
   const ActiveSegments &faces() const { return band_; }
   /// force += scale sigma kappa grad(phi) at owned faces; the force, times its factor, is also added to `slope`. Adds
   /// what is added to `force` to `net`.
   void add_force(double scale, Field &force, const WeightedTarget &slope, NetForce *net);
+  /// Adds tension kappa grad(phi) to the owned faces of component d in a row.
+  void add_to_row(double tension, int d, int j, int k, double *force);
   /// The power that the flow supplies to the surface, divided by the cell volume, and the area of the planes by which
   /// transport cuts cells (2-D: length); sigma times the area is the energy.
   enum Sum { power, area, sums };
@@ -49,6 +53,7 @@ private:
   const Box *box_;
   GhostExchange *exchange_;
   const Phase *phase_ = nullptr;
+  ConstView phi_{};
   Field work_;           ///< view of `work` of find()
   ActiveSegments band_;  ///< includes one ghost layer
 };

@@ -213,6 +213,13 @@ EULASTIC_INLINE MembraneState membrane_state(const Membrane &m, const SurfaceStr
   return {G * (I1 + 1) / J, G * J * (C * I2 - 1), 0.25 * G * (I1 * I1 + 2 * I1 - 2 * I2 + C * I2 * I2), J};
 }
 
+/// Returns the mean of the principal tensions; 2-D: the tension in the plane.
+template <int Dim>
+EULASTIC_INLINE double mean_tension(const Membrane &m, const SurfaceStrain &s) noexcept {
+  const MembraneState state = membrane_state(m, s);
+  return fma(state.alpha, Dim == 2 ? s.trace - 1 : 0.5 * s.trace, state.beta);
+}
+
 /// Returns the larger of the two principal stretches along the surface.
 EULASTIC_INLINE double larger_stretch(const SurfaceStrain &s) noexcept {
   const double square = s.trace * s.trace - 4 * s.area_squared;

@@ -281,7 +281,43 @@ constexpr int force_reach = 2;
 
 }  // namespace
 
-// Computes delta tau at centres, with the ghosts that the force reads; 0 elsewhere in rows that the force reaches.
+// The mean of the tension over the surface. Only a tension that pulls is taken out of the stress: a surface that pushes
+// is unstable, the more so the sharper it is.
+template <int Dim>
+PetscErrorCode MembraneMechanics::find_uniform_tension(const Phase &phase) {
+  enum { force, area, count };
+  ExactSums sums(count);
+  double total[count];
+  PetscFunctionBeginUser;
+  for (const SurfaceCells::Cell &cell : surface_.all()) {
+    if (!cell.owned) continue;
+    const kernels::SurfaceStrain strain = kernels::surface_strain<Dim>(tensor_at<Dim>(phase.tensor.field, cell.at));
+    sums.add(force, cell.delta * kernels::mean_tension<Dim>(phase.material.membrane, strain));
+    sums.add(area, cell.delta);
+  }
+  if (place_.exchange)
+    PetscCall(sums.reduce(place_.exchange->comm(), total));
+  else
+    sums.values(total);
+  uniform_tension_ = total[area] > 0 ? std::max(total[force] / total[area], 0.0) : 0;
+  PetscFunctionReturn(0);
+}
+
+// Finds the mean tension and the curvatures for its force.
+PetscErrorCode MembraneMechanics::find_tension(const Phase &phase) {
+  PetscFunctionBeginUser;
+  {
+    EventScope scope(Event::membrane);
+    PetscCall(place_.box->dimension() == 2 ? find_uniform_tension<2>(phase) : find_uniform_tension<3>(phase));
+  }
+  if (uniform_tension_ == 0) PetscFunctionReturn(0);
+  Field work = surface_fields_.part(SurfaceCells::sharp, CapillaryForce::work_fields);
+  PetscCall(capillary_.find(phase, surface_.fraction_within_walls(phase, surface_fields_[SurfaceCells::level]), work));
+  PetscFunctionReturn(0);
+}
+
+// Computes delta (tau - T P) at centres, T the mean tension, with the ghosts that the force reads; 0 elsewhere in rows
+// that the force reaches.
 PetscErrorCode MembraneMechanics::find_stress(const Phase &phase, Field &stress) {
   PetscFunctionBeginUser;
   EventScope scope(Event::membrane);
@@ -293,7 +329,7 @@ PetscErrorCode MembraneMechanics::find_stress(const Phase &phase, Field &stress)
         phase.material.membrane, kernels::surface_strain<int(std::tuple_size_v<decltype(B)>)>(B));
     for (std::size_t a = 0; a < B.size(); ++a)
       for (std::size_t b = 0; b < B.size(); ++b)
-        B[a][b] = cell.spread * kernels::fma(state.alpha, B[a][b], state.beta * P[a][b]);
+        B[a][b] = cell.spread * kernels::fma(state.alpha, B[a][b], (state.beta - uniform_tension_) * P[a][b]);
     return B;
   };
   for (const SurfaceCells::Cell &cell : surface_.all()) {
@@ -323,10 +359,12 @@ PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const Force
   for (const bool bending : {false, true}) {
     if (bending && !(phase.material.membrane.bending_modulus > 0)) continue;
     Field fields = scratch_fields_.part(0, bending ? MembraneBending::work_fields : phase.tensor.field.count());
-    if (bending)
+    if (bending) {
       PetscCall(bending_.find(phase, smooth(), fields));
-    else
+    } else {
+      PetscCall(find_tension(phase));
       PetscCall(find_stress(phase, fields));
+    }
     EventScope scope(Event::membrane);
     in_row_parts(*place_.box, [&](const RowPart &part) {
       RowScratch scratch(*place_.box, 1);
@@ -339,7 +377,8 @@ PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const Force
               bending_.force_row(fields, a, j, k, force);
             else
               (dim == 2 ? divergence_2d : divergence_3d)(fields, a, inverse, n, j, k, force);
-            use(part.number, bending, a, j, k, force);
+            if (!bending && uniform_tension_ > 0) capillary_.add_to_row(uniform_tension_, a, j, k, force);
+            use(part.number, a, j, k, force);
           }
         }
     });
@@ -410,7 +449,7 @@ PetscErrorCode MembraneMechanics::measure(const Phase &phase, const Field &veloc
   std::vector<double> bending;
   PetscCall(for_force_rows(
       phase,
-      [&](int part, bool, int a, int j, int k, double *force) {
+      [&](int part, int a, int j, int k, double *force) {
         const double *v = velocity[a].row(j, k);
         for (int i = 0; i < n; ++i) force[i] *= -v[i];
         (*sum)[part].add_row(power, force, n, first);

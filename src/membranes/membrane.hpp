@@ -4,6 +4,7 @@
 
 #include "base/exact_sum.hpp"
 #include "base/petsc.hpp"
+#include "drops/capillary_force.hpp"
 #include "field/phase.hpp"
 #include "field/surface_marker.hpp"
 #include "membranes/bending.hpp"
@@ -25,13 +26,14 @@ public:
   static constexpr int reach = around_membranes.reach;
 
   /// The objects in `place` must outlive this.
-  explicit MembraneMechanics(const PhaseDomain &place) : place_(place), surface_(place), bending_(place) {}
+  explicit MembraneMechanics(const PhaseDomain &place)
+      : place_(place), surface_(place), bending_(place), capillary_(*place.box, place.exchange) {}
 
   /// Finds the surface of a phase from phi with five ghosts. All later calls refer to this phase and use `work`,
   /// work_fields components, until the next find(). Collective on the grid, like all functions below.
   PetscErrorCode find(const Phase &phase, Field &work);
   const SurfaceCells &surface() const { return surface_; }
-  /// The fields as SurfaceCells::find() left them.
+  /// The fields as SurfaceCells::find() left them; after for_force_rows(), which uses the others, only smoothed phi.
   const Field &surface_fields() const { return surface_fields_; }
   /// Sets B_s from B = F F^T of the bodies, which is given in cells with phi > 0 (I: undeformed), and stretches its
   /// area by initial_area_stretch.
@@ -43,9 +45,9 @@ public:
   /// at the start; strain is lost there.
   PetscErrorCode move(double dt, const Field &velocity, const std::vector<SurfaceMarkers::Strain> &strains,
                       Phase *phase, long *unresolved);
-  /// Receives the number of the row part, whether the force is that of bending, component, j, k, and the force per
-  /// volume on the owned faces of the row, which it may overwrite.
-  using ForceRow = std::function<void(int, bool, int, int, int, double *)>;
+  /// Receives the number of the row part, component, j, k, and the force per volume on the owned faces of the row,
+  /// which it may overwrite.
+  using ForceRow = std::function<void(int, int, int, int, double *)>;
   /// Calls `use` for the forces of stress and bending. `bending_energy`: energy per area at each cell of surface().
   PetscErrorCode for_force_rows(const Phase &phase, const ForceRow &use, std::vector<double> *bending_energy = nullptr);
   enum Sum { power, stored, sums };
@@ -62,7 +64,10 @@ public:
   static void add_stored_energy(const std::vector<SurfaceSample> &samples, double volume, ExactSums *sum);
 
 private:
-  /// Computes delta tau at centres, from the cells of surface_.
+  template <int Dim>
+  PetscErrorCode find_uniform_tension(const Phase &phase);
+  PetscErrorCode find_tension(const Phase &phase);
+  /// Computes delta tau, without the uniform tension, at centres, from the cells of surface_.
   PetscErrorCode find_stress(const Phase &phase, Field &stress);
   /// Does not fill the layers of the second stage.
   template <int Dim>
@@ -75,6 +80,9 @@ private:
   PhaseDomain place_;
   SurfaceCells surface_;
   MembraneBending bending_;
+  /// The mean tension over the surface of the phase, which acts like a surface tension; force per length.
+  double uniform_tension_ = 0;
+  CapillaryForce capillary_;
   Field surface_fields_, scratch_fields_;  ///< parts of the fields in `work`
 };
 

@@ -145,9 +145,7 @@ PetscErrorCode MembraneTransport::update_after_labels() {
 }
 
 bool MembraneTransport::accelerates_all(const std::vector<Phase> &phases) const {
-  return flow_.drifts() && std::any_of(phases.begin(), phases.end(), [](const Phase &phase) {
-           return is_on_grid(phase) && phase.material.membrane.bending_modulus > 0;
-         });
+  return flow_.drifts() && exists(phases);
 }
 
 void MembraneTransport::clear_force() {
@@ -162,9 +160,9 @@ void MembraneTransport::clear_force() {
 PetscErrorCode MembraneTransport::add_phase_force(const Phase &phase, NetForce *net) {
   PetscFunctionBeginUser;
   const int n = flow_.domain.cells()[0];
-  PetscCall(membrane_.for_force_rows(phase, [&](int part, bool bending, int a, int j, int k, const double *added) {
+  PetscCall(membrane_.for_force_rows(phase, [&](int part, int a, int j, int k, const double *added) {
     add_force_row(n, added, 0, force_[a].row(j, k), nullptr);
-    if (bending) net->add_row(flow_.domain, part, a, added);
+    net->add_row(flow_.domain, part, a, added);
   }));
   film_.add_force(phase, force_);
   PetscFunctionReturn(0);

@@ -152,22 +152,25 @@ bool SurfaceCells::is_beside_solid_side(const Phase &phase) const {
   return false;
 }
 
-// Computes psi, levels and integrals. A body ends at a solid boundary, although phi continues behind it, so
-// that its surface is found there too.
+ConstView SurfaceCells::fraction_within_walls(const Phase &phase, View copy) const {
+  const ConstView phi = phase.fraction[0];
+  if (!is_beside_solid_side(phase)) return phi;
+  const int ghosts = place_.box->layout().ghosts[0], layers_z = place_.box->dimension() == 3 ? ghosts : 0;
+  const Int3 &n = place_.box->cells();
+  for (int k = -layers_z; k < n[2] + layers_z; ++k)
+    for (int j = -ghosts; j < n[1] + ghosts; ++j)
+      if (is_near_occupied_row(*place_.box, phase.rows, j, k))
+        std::copy_n(phi.row(j, k) - ghosts, n[0] + 2 * ghosts, copy.row(j, k) - ghosts);
+  clear_solid_ghosts(*place_.box, *place_.sides, copy, ghosts, &phase.rows);
+  return copy;
+}
+
+// Computes psi, levels and integrals.
 PetscErrorCode SurfaceCells::find_level(const Phase &phase, Field &fields) {
   PetscFunctionBeginUser;
   const int dim = place_.box->dimension(), ghosts = place_.box->layout().ghosts[0], layers_z = dim == 3 ? ghosts : 0;
   const Int3 &n = place_.box->cells();
-  ConstView phi = phase.fraction[0];
-  if (is_beside_solid_side(phase)) {
-    const View copy = fields[sharp];
-    for (int k = -layers_z; k < n[2] + layers_z; ++k)
-      for (int j = -ghosts; j < n[1] + ghosts; ++j)
-        if (is_near_occupied_row(*place_.box, phase.rows, j, k))
-          std::copy_n(phi.row(j, k) - ghosts, n[0] + 2 * ghosts, copy.row(j, k) - ghosts);
-    clear_solid_ghosts(*place_.box, *place_.sides, copy, ghosts, &phase.rows);
-    phi = copy;
-  }
+  const ConstView phi = fraction_within_walls(phase, fields[sharp]);
   const auto fill = [&](int field, const auto &row) {
     PetscFunctionBeginUser;
     clear_near_rows(*place_.box, phase.rows, ghosts, fields[field]);
