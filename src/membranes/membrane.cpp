@@ -20,6 +20,9 @@ using kernels::Vector;
 
 constexpr double largest_trace_ratio = 2;    // largest ratio of tr B_s between markers and grid
 constexpr double largest_area_excess = 0.5;  // largest excess of the markers' area energy over that of the grid, in G_s
+// Principal curvatures times the grid spacing up to which, and from which, the force of a uniform tension is all or
+// nothing of the mean tension.
+constexpr double resolved_turn = 0.25, unresolved_turn = 0.4;
 
 template <int Dim>
 struct Differences {
@@ -303,13 +306,20 @@ PetscErrorCode MembraneMechanics::find_uniform_tension(const Phase &phase) {
   PetscFunctionReturn(0);
 }
 
-// Finds the mean tension and the curvatures for its force.
+// Finds the uniform tension and the curvatures for its force. Where the surface turns within a few cells, heights miss
+// a part of the curvature, and a sharp edge would not be held back; the divergence of the stress has exactly no net
+// force.
 PetscErrorCode MembraneMechanics::find_tension(const Phase &phase) {
   PetscFunctionBeginUser;
   {
     EventScope scope(Event::membrane);
     PetscCall(place_.box->dimension() == 2 ? find_uniform_tension<2>(phase) : find_uniform_tension<3>(phase));
   }
+  if (uniform_tension_ == 0) PetscFunctionReturn(0);
+  double turn = surface_.sharpest(surface_fields_);
+  if (place_.exchange)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &turn, 1, MPI_DOUBLE, MPI_MAX, place_.exchange->comm()));
+  uniform_tension_ *= std::clamp((unresolved_turn - turn) / (unresolved_turn - resolved_turn), 0.0, 1.0);
   if (uniform_tension_ == 0) PetscFunctionReturn(0);
   Field work = surface_fields_.part(SurfaceCells::sharp, CapillaryForce::work_fields);
   PetscCall(capillary_.find(phase, surface_.fraction_within_walls(phase, surface_fields_[SurfaceCells::level]), work));

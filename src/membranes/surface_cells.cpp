@@ -117,6 +117,35 @@ double SurfaceCells::distance_at(const Field &fields, const Cell &cell, const Re
   return x * width(cell.normal);
 }
 
+double SurfaceCells::sharpest(const Field &fields) const {
+  constexpr double least_radius = 2;  // in cells
+  constexpr std::ptrdiff_t stride[3] = {1, 3, 9};
+  const ConstView levels = fields[level];
+  const Real3 &h = place_.box->spacing();
+  const bool flat = place_.box->dimension() == 2;
+  const double inverse[3] = {1 / h[0], 1 / h[1], 1 / h[2]}, longest = std::max({h[0], h[1], flat ? 0 : h[2]}),
+               steepest = 1 / (least_radius * longest);
+  const auto largest_at = [&](std::ptrdiff_t at) {
+    double x[27];
+    int m = 0;
+    for (int k = flat ? 0 : -1; k <= (flat ? 0 : 1); ++k)
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) x[m++] = cut_level - levels.origin[at + i + j * levels.sy + k * levels.sz];
+    const kernels::Curvatures found = flat ? kernels::surface_curvatures<2>(x + m / 2, stride, inverse, steepest)
+                                           : kernels::surface_curvatures<3>(x + m / 2, stride, inverse, steepest);
+    const double mean = 0.5 * found.sum, square = mean * mean - found.product;
+    return std::abs(mean) + std::sqrt(std::max(square, 0.0));
+  };
+  const int parts = row_parts(*place_.box);
+  std::vector<double> most(parts);
+  in_parallel(parts, parts, [&](int part) {
+    const Piece piece(nearest_count(), part, parts);
+    for (std::size_t c = piece.begin; c < piece.end; ++c)
+      if (cells_[c].owned) most[part] = std::max(most[part], largest_at(cells_[c].at));
+  });
+  return longest * *std::max_element(most.begin(), most.end());
+}
+
 // Width of delta.
 double SurfaceCells::width(const Real3 &normal) const {
   double square = 0;

@@ -40,6 +40,9 @@ public:
   /// Distance from the surface of a point at `offset` (in cells, at most 1) from the centre of a cell of all().
   /// `fields` as find() left them.
   double distance_at(const Field &fields, const Cell &cell, const Real3 &offset) const;
+  /// Returns the largest principal curvature times the grid spacing (at most a half) in the owned nearest cells of this
+  /// rank. `fields` as find() left them.
+  double sharpest(const Field &fields) const;
   /// Index in all() of the cell at an offset from the origin; -1 if there is none.
   int number(std::ptrdiff_t at) const { return number_[place_.box->layout().origin + at]; }
   /// Fills the layers and three ghosts of a tensor, all of whose components are at centres, from the nearest cells.
