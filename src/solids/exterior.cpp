@@ -11,6 +11,12 @@
 namespace eulastic {
 namespace {
 
+// A line of linear extrapolation has three points.
+constexpr int line_points = 3;
+// The layer whose first ghosts this rank computes itself, from layers that have been exchanged before: their lines
+// reach the fourth ghost.
+constexpr int unexchanged_layer = 2;
+
 // The owned points of a field and `layers` of points around them.
 struct PointBlock {
   Int3 begin{}, end{};
@@ -167,7 +173,7 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Masks *m
   const Staggering &at = location->staggering;
   const int dimension = box.dimension();
   // An edge depends on one centre further down, so four layers of edges need five layers of centres.
-  const PointBlock all(box, at, layers), owned(box, at, 0);
+  const PointBlock all(box, at, layers);
   Extent block{all.begin, all.end};  // with the rows that neighbours and lines read
   for (int d = 1; d < dimension; ++d) {
     block.begin[d] -= linear_ ? 3 : 1;
@@ -183,7 +189,7 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Masks *m
     const BitRows &below = (*masks)[L - 1];
     const std::ptrdiff_t sy = below.words(), sz = below.words_in_plane();
     const int base = below.begin_x();
-    const PointBlock extent(box, at, layers - L);
+    const PointBlock extent(box, at, layers - L), with_lines(box, at, L == unexchanged_layer ? 1 : 0);
     for (int k = extent.begin[2]; k < extent.end[2]; ++k)
       for (int j = extent.begin[1]; j < extent.end[1]; ++j)
         for (int w = 0; w < below.words(); ++w) {
@@ -199,7 +205,8 @@ void ExteriorLayers::build_location(const Box &box, const Phase &phase, Masks *m
           found.row(j, k)[w] |= next;
           DirectionWords lines;
           if (linear_) {
-            next &= owned.has_row(j, k) ? bits_between(owned.begin[0] - base, owned.end[0] - base, w) : 0;
+            next &=
+                with_lines.has_row(j, k) ? bits_between(with_lines.begin[0] - base, with_lines.end[0] - base, w) : 0;
             for (int n = 0; next != 0 && n < 2 * dimension; ++n)
               lines.of[n] = LayerWords{*masks, j, k, w}.lines(L, n / 2, n % 2 ? 1 : -1);
           }
@@ -234,7 +241,8 @@ PetscErrorCode ExteriorLayers::extend(const Box &box, const BoundaryConditions &
     in_parallel(parts, parts, [&](int part) { flops[part] = extend_part(box, L, part, parts, tensor.data()); });
     for (const double part_flops : flops) scope.flops(part_flops);
     clear_symmetry_planes(box, sides, tensor);  // the mean of a component and its mirror image is 0
-    if (linear_ && exchange && L < layers) PetscCall(exchange->update_ghosts(tensor, 3));
+    if (linear_ && exchange && L < layers && L != unexchanged_layer)
+      PetscCall(exchange->update_ghosts(tensor, L < unexchanged_layer ? unexchanged_layer : line_points));
   }
   PetscFunctionReturn(0);
 }

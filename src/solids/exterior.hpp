@@ -38,8 +38,8 @@ public:
   /// Finds the layers around the bodies of the phase. phi needs five valid ghost layers; find_solid() must have run.
   PetscErrorCode build(const Box &box, const Phase &phase);
   /// Extrapolates all components of B to the layers. Other points outside keep their value, I. Linear extrapolation
-  /// reads three points inwards, so that for anchored bodies ghosts are exchanged after every layer; `exchange` is null
-  /// for boxes that are complete on this rank.
+  /// reads three points inwards, so that for anchored bodies ghosts are exchanged after the first and the third layer;
+  /// `exchange` is null for boxes that are complete on this rank.
   PetscErrorCode extend(const Box &box, const BoundaryConditions &sides, GhostExchange *exchange, Field &tensor) const;
   /// Number of points in the layers of all locations.
   double points() const noexcept;
