@@ -139,14 +139,6 @@ void ExactSums::add(ExactSums &other) noexcept {
   }
 }
 
-void ExactSums::values(double *result) noexcept {
-  for (std::size_t s = 0; s < sums_.size(); ++s) {
-    flush(static_cast<int>(s));
-    result[s] = sums_[s].value();
-  }
-  clear();
-}
-
 PetscErrorCode ExactSums::reduce(MPI_Comm comm, double *result) {
   static_assert(sizeof(Superaccumulator) == Superaccumulator::words * sizeof(std::int64_t), "plain words");
   PetscFunctionBeginUser;

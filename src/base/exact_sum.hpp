@@ -56,8 +56,6 @@ public:
   void add_row(int s, const double *values, int n, std::int64_t first) noexcept;
   /// Adds the sums of `other`, which has the same number of sums, and flushes its buffers.
   void add(ExactSums &other) noexcept;
-  /// Writes the sums of this rank to `result` and resets them to zero.
-  void values(double *result) noexcept;
   /// Sums over all ranks with one Allreduce, writes `count` doubles to `result` and resets all sums to zero.
   PetscErrorCode reduce(MPI_Comm comm, double *result);
 

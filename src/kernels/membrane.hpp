@@ -213,11 +213,13 @@ EULASTIC_INLINE MembraneState membrane_state(const Membrane &m, const SurfaceStr
   return {G * (I1 + 1) / J, G * J * (C * I2 - 1), 0.25 * G * (I1 * I1 + 2 * I1 - 2 * I2 + C * I2 * I2), J};
 }
 
-/// Returns the mean of the principal tensions; 2-D: the tension in the plane.
+/// Returns the smaller of the two principal tensions; 2-D: the tension in the plane.
 template <int Dim>
-EULASTIC_INLINE double mean_tension(const Membrane &m, const SurfaceStrain &s) noexcept {
+EULASTIC_INLINE double smaller_tension(const Membrane &m, const SurfaceStrain &s) noexcept {
   const MembraneState state = membrane_state(m, s);
-  return fma(state.alpha, Dim == 2 ? s.trace - 1 : 0.5 * s.trace, state.beta);
+  const double square = s.trace * s.trace - 4 * s.area_squared,
+               difference = __builtin_fabs(state.alpha) * __builtin_sqrt(square > 0 ? square : 0);
+  return Dim == 2 ? fma(state.alpha, s.trace - 1, state.beta) : 0.5 * (state.alpha * s.trace - difference) + state.beta;
 }
 
 /// Returns the larger of the two principal stretches along the surface.

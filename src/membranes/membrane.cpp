@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace eulastic {
@@ -21,7 +22,7 @@ using kernels::Vector;
 constexpr double largest_trace_ratio = 2;    // largest ratio of tr B_s between markers and grid
 constexpr double largest_area_excess = 0.5;  // largest excess of the markers' area energy over that of the grid, in G_s
 // Principal curvatures times the grid spacing up to which, and from which, the force of a uniform tension is all or
-// nothing of the mean tension.
+// nothing of the smallest tension.
 constexpr double resolved_turn = 0.25, unresolved_turn = 0.4;
 
 template <int Dim>
@@ -284,50 +285,35 @@ constexpr int force_reach = 2;
 
 }  // namespace
 
-// The mean of the tension over the surface. Only a tension that pulls is taken out of the stress: a surface that pushes
-// is unstable, the more so the sharper it is.
+// Finds the uniform tension and the curvatures for its force. It is the tension that all of the surface has in every
+// direction. Where the surface turns within a few cells, heights miss a part of the curvature, and a sharp edge would
+// not be held back; the divergence of the stress has exactly no net force.
 template <int Dim>
 PetscErrorCode MembraneMechanics::find_uniform_tension(const Phase &phase) {
-  enum { force, area, count };
-  ExactSums sums(count);
-  double total[count];
   PetscFunctionBeginUser;
-  for (const SurfaceCells::Cell &cell : surface_.all()) {
-    if (!cell.owned) continue;
-    const kernels::SurfaceStrain strain = kernels::surface_strain<Dim>(tensor_at<Dim>(phase.tensor.field, cell.at));
-    sums.add(force, cell.delta * kernels::mean_tension<Dim>(phase.material.membrane, strain));
-    sums.add(area, cell.delta);
-  }
-  if (place_.exchange)
-    PetscCall(sums.reduce(place_.exchange->comm(), total));
-  else
-    sums.values(total);
-  uniform_tension_ = total[area] > 0 ? std::max(total[force] / total[area], 0.0) : 0;
-  PetscFunctionReturn(0);
-}
-
-// Finds the uniform tension and the curvatures for its force. Where the surface turns within a few cells, heights miss
-// a part of the curvature, and a sharp edge would not be held back; the divergence of the stress has exactly no net
-// force.
-PetscErrorCode MembraneMechanics::find_tension(const Phase &phase) {
-  PetscFunctionBeginUser;
+  double largest[2] = {-std::numeric_limits<double>::infinity(), 0};  // minus the tension; the turn of the surface
   {
     EventScope scope(Event::membrane);
-    PetscCall(place_.box->dimension() == 2 ? find_uniform_tension<2>(phase) : find_uniform_tension<3>(phase));
+    for (std::size_t c = 0; c < surface_.nearest_count(); ++c) {
+      const SurfaceCells::Cell &cell = surface_.all()[c];
+      if (!cell.owned) continue;
+      const kernels::SurfaceStrain strain = kernels::surface_strain<Dim>(tensor_at<Dim>(phase.tensor.field, cell.at));
+      largest[0] = std::max(largest[0], -kernels::smaller_tension<Dim>(phase.material.membrane, strain));
+    }
+    if (place_.exchange || largest[0] < 0) largest[1] = surface_.sharpest(surface_fields_);
   }
-  if (uniform_tension_ == 0) PetscFunctionReturn(0);
-  double turn = surface_.sharpest(surface_fields_);
   if (place_.exchange)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &turn, 1, MPI_DOUBLE, MPI_MAX, place_.exchange->comm()));
-  uniform_tension_ *= std::clamp((unresolved_turn - turn) / (unresolved_turn - resolved_turn), 0.0, 1.0);
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, place_.exchange->comm()));
+  const double share = std::clamp((unresolved_turn - largest[1]) / (unresolved_turn - resolved_turn), 0.0, 1.0);
+  uniform_tension_ = std::isfinite(largest[0]) ? share * std::max(-largest[0], 0.0) : 0;
   if (uniform_tension_ == 0) PetscFunctionReturn(0);
   Field work = surface_fields_.part(SurfaceCells::sharp, CapillaryForce::work_fields);
   PetscCall(capillary_.find(phase, surface_.fraction_within_walls(phase, surface_fields_[SurfaceCells::level]), work));
   PetscFunctionReturn(0);
 }
 
-// Computes delta (tau - T P) at centres, T the mean tension, with the ghosts that the force reads; 0 elsewhere in rows
-// that the force reaches.
+// Computes delta (tau - T P) at centres, T the uniform tension, with the ghosts that the force reads; 0 elsewhere in
+// rows that the force reaches.
 PetscErrorCode MembraneMechanics::find_stress(const Phase &phase, Field &stress) {
   PetscFunctionBeginUser;
   EventScope scope(Event::membrane);
@@ -372,7 +358,7 @@ PetscErrorCode MembraneMechanics::for_force_rows(const Phase &phase, const Force
     if (bending) {
       PetscCall(bending_.find(phase, smooth(), fields));
     } else {
-      PetscCall(find_tension(phase));
+      PetscCall(dim == 2 ? find_uniform_tension<2>(phase) : find_uniform_tension<3>(phase));
       PetscCall(find_stress(phase, fields));
     }
     EventScope scope(Event::membrane);

@@ -66,7 +66,6 @@ public:
 private:
   template <int Dim>
   PetscErrorCode find_uniform_tension(const Phase &phase);
-  PetscErrorCode find_tension(const Phase &phase);
   /// Computes delta tau, without the uniform tension, at centres, from the cells of surface_.
   PetscErrorCode find_stress(const Phase &phase, Field &stress);
   /// Does not fill the layers of the second stage.
@@ -80,7 +79,7 @@ private:
   PhaseDomain place_;
   SurfaceCells surface_;
   MembraneBending bending_;
-  /// The mean tension over the surface of the phase, which acts like a surface tension; force per length.
+  /// The tension that all of the surface has, which acts like a surface tension; force per length.
   double uniform_tension_ = 0;
   CapillaryForce capillary_;
   Field surface_fields_, scratch_fields_;  ///< parts of the fields in `work`
