@@ -105,6 +105,17 @@ inline Viscous viscous_rates(const Box &box, const RigidFaces &faces, const Rigi
   return {cut.laplacian(u, s, box.dimension(), wall), regular_laplacian(box, u, s)};
 }
 
+// Position of a cut face as the body at the end of a link sees it: beside the neighbour inside, whose position is
+// wrapped into the box.
+inline Real3 position_at_link(const Box &box, int a, const Int3 &face, int link) {
+  const int d = link / 2, N = box.domain_cells()[d];
+  Real3 place = face_position(box, a, face[0], face[1], face[2]);
+  const double least = (d == a ? 0 : 0.5) - 0.5 * N, neighbour = place[d] + (link % 2 ? 1 : -1);
+  if (!box.is_wall(d) && neighbour < least) place[d] += N;
+  if (!box.is_wall(d) && neighbour > least + N - 1) place[d] -= N;
+  return place;
+}
+
 // The rate dV/dt - V.grad u of (28b) beside a travelling body, with V its velocity at `place`: that of a flow at rest
 // in the frame of the body. Upwind and half implicit: where the surface approaches, u - u_s decreases with the
 // distance.
