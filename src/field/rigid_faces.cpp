@@ -53,6 +53,16 @@ Real3 RigidMotion::acceleration(const Real3 &r, double time) const {
   return a;
 }
 
+Real3 RigidMotion::surface_acceleration(const Real3 &r, double time) const {
+  Real3 a = acceleration(r, time);
+  const Real3 euler = cross(angular_velocity, r);
+  for (int d = 0; d < 3; ++d) {
+    if (!travelling[d]) a[d] += velocity[d] * of_velocity.rate(time);
+    if (!turning) a[d] += euler[d] * of_rotation.rate(time);
+  }
+  return a;
+}
+
 double RigidMass::dissipation(const RigidMotion &motion, int dimension) const {
   const auto square = [](const Real3 &v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
   if (volume == 0) return 0;

@@ -46,6 +46,14 @@ struct RigidMotion {
   Real3 frame_velocity(const Real3 &r, double time) const;
   /// Returns the acceleration at r from its centre.
   Real3 acceleration(const Real3 &r, double time) const;
+  /// Whether fluid beside its surface needs the rate of (28b): it travels, or its velocity changes.
+  bool changes_frame() const {
+    return travels() || (velocity != Real3{} && of_velocity.frequency != 0) ||
+           (angular_velocity != Real3{} && of_rotation.frequency != 0);
+  }
+  /// Returns the rate of change of the velocity of its surface at r from its centre, in the frame in which its shape is
+  /// at rest. In contrast to acceleration() it includes motion along its own surface.
+  Real3 surface_acceleration(const Real3 &r, double time) const;
   /// Returns the angular velocity times a factor for a body that rotates through the grid, 0 for others.
   Real3 rotation_vector(double factor) const {
     Real3 w{};

@@ -102,7 +102,7 @@ double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, 
   return correction;
 }
 
-// Sets the rate that cut faces miss because they get only their share of it, in the frame of travelling bodies.
+// Sets the rate that cut faces miss because they get only their share of it, in the frame of (28b).
 void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_star) {
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *before = velocity[a].row(j, k), *after = velocity_star[a].row(j, k);
@@ -111,11 +111,8 @@ void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_s
       if (!owned(domain_, a, i)) continue;
       double rate = (after[i] - before[i]) / dt_;
       double &missing = missing_rate_[a][index(a, *cut)];
-      if (motion_of(cut->body).travels()) {
-        rate -= rate_in_body_frame(domain_, faces_, *cut, a, face_position(domain_, a, i, j, k), time_, dt_, before + i,
-                                   strides(velocity[a]));
-        if (fluid_.inertia) missing = curved_advection(a, *cut, j, k, velocity);
-      }
+      if (changes_frame(faces_, *cut)) rate -= rate_in_frame(domain_, faces_, *cut, a, {i, j, k}, time_, dt_, velocity);
+      if (fluid_.inertia && motion_of(cut->body).travels()) missing = curved_advection(a, *cut, j, k, velocity);
       missing += (1 / cut->share - 1) * rate;
     }
   });

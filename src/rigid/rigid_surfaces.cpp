@@ -19,9 +19,8 @@ void apply_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscos
       if (!owned(box, a, cut->i)) continue;
       const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
-      if (faces.motions[faces.bodies[cut->body].motion].travels())
-        out[cut->i] += (1 - cut->share) * rate_in_body_frame(box, faces, *cut, a, face_position(box, a, cut->i, j, k),
-                                                             time, dt, u + cut->i, strides(velocity[a]));
+      if (changes_frame(faces, *cut))
+        out[cut->i] += (1 - cut->share) * rate_in_frame(box, faces, *cut, a, {cut->i, j, k}, time, dt, velocity);
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -72,6 +71,8 @@ void apply_rigid_surfaces_euler(const Box &box, const RigidFaces &faces, double 
       const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       const double change = (out[cut->i] - u[cut->i]) + dt * (viscosity * rates.cut - included * rates.regular);
       out[cut->i] = u[cut->i] + cut->share * change;
+      if (changes_frame(faces, *cut))
+        out[cut->i] += (1 - cut->share) * dt * rate_in_frame(box, faces, *cut, a, {cut->i, j, k}, time, dt, velocity);
     }
   });
   scope.flops(cut_faces * (viscous_rates_flops(box.dimension()) + 7));
