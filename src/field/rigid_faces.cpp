@@ -70,6 +70,21 @@ double RigidMass::dissipation(const RigidMotion &motion, int dimension) const {
          6 * square(motion.angular_velocity) * volume;
 }
 
+RigidMass RigidMass::turned(const std::array<Real3, 3> &R) const {
+  const auto &[xx, yy, zz, yz, xz, xy] = second;
+  const std::array<Real3, 3> S{{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}};
+  const auto rotated = [&](int a, int b) {
+    double sum = 0;
+    for (int m = 0; m < 3; ++m)
+      for (int n = 0; n < 3; ++n) sum += R[a][m] * S[m][n] * R[b][n];
+    return sum;
+  };
+  RigidMass now{volume, {}, {rotated(0, 0), rotated(1, 1), rotated(2, 2), rotated(1, 2), rotated(0, 2), rotated(0, 1)}};
+  for (int a = 0; a < 3; ++a)
+    for (int m = 0; m < 3; ++m) now.first[a] += R[a][m] * first[m];
+  return now;
+}
+
 // Integrates the acceleration over the body.
 Real3 RigidMass::force(const RigidMotion &motion, double time, double density) const {
   const Real3 a = motion.acceleration({}, time), w = motion.rotation_vector(motion.of_rotation.at(time)),

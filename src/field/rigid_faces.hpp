@@ -68,6 +68,8 @@ struct RigidMass {
   double volume = 0;
   Real3 first{};                   ///< integral of r
   std::array<double, 6> second{};  ///< integral of r r^T: xx, yy, zz, yz, xz, xy
+  /// Returns the moments of the body rotated by the matrix R, in the same axes.
+  RigidMass turned(const std::array<Real3, 3> &R) const;
   /// Returns an estimate of the dissipation at the viscosity 1 and the largest velocities of its motion: that of a
   /// sphere of its volume in Stokes flow, in 2-D of a cylinder.
   double dissipation(const RigidMotion &motion, int dimension) const;

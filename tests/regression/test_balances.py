@@ -7,6 +7,7 @@ import pathlib
 import sys
 import unittest
 
+import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
@@ -92,6 +93,24 @@ class Balances(SceneCase):
             for row in rows[1:]:
                 for column in "viscous_dissipation", "wall_power", "energy_lost":
                     self.assertAlmostEqual(row[column], rows[0][column], delta=1e-6 * row.viscous_dissipation, msg=f"{name}: {column}")
+
+    def test_torque_of_voxels_across_a_periodic_boundary(self):
+        """It is that of the nearest image about the centre, wherever the scene begins."""
+        solid = numpy.zeros((1, 16, 16))
+        solid[0, 5:11, 5:9] = solid[0, 5:8, 5:12] = 1  # an L
+        solid[0, 7, 11] = .7
+        torques = []
+        for n, (x, y) in enumerate(((0, 0), (8, 0), (0, 8), (-7, 7))):
+            with h5py.File(self.room / f"solid{n}.h5", "w") as file:
+                file["solid"] = numpy.roll(solid, (y, x), (1, 2))
+            centre = (.45 + x / 16) % 1, (.48 + y / 16) % 1
+            run = self.run_program(f"voxels{n}", *BOX, *(
+                f"-time_end .1 -fluid_viscosity 1 -acm_tolerance 1e-9 -body_force 1,.5,0 -species s -s_law rigid -s_shape voxels "
+                f"-s_voxels {self.room}/solid{n}.h5 -s_voxels_spacing .0625,.0625,1 -s_centre {centre[0]},{centre[1]},.5").split())
+            torques.append(run.bodies.torque[:, 0, 2])
+        self.assertGreater(abs(torques[0][-1]), .003)
+        for torque in torques[1:]:
+            numpy.testing.assert_allclose(torque, torques[0], atol=1e-6)
 
     def test_rigid_bodies_move_without_series_of_bodies(self):
         """The power of a body that turns is in the energy budget whether bodies.h5 is written or not."""
