@@ -53,11 +53,36 @@ Real3 RigidMotion::acceleration(const Real3 &r, double time) const {
   return a;
 }
 
+Real3 RigidMotion::surface_acceleration(const Real3 &r, double time) const {
+  Real3 a = acceleration(r, time);
+  const Real3 euler = cross(angular_velocity, r);
+  for (int d = 0; d < 3; ++d) {
+    if (!travelling[d]) a[d] += velocity[d] * of_velocity.rate(time);
+    if (!turning) a[d] += euler[d] * of_rotation.rate(time);
+  }
+  return a;
+}
+
 double RigidMass::dissipation(const RigidMotion &motion, int dimension) const {
   const auto square = [](const Real3 &v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
   if (volume == 0) return 0;
   return 12 * square(motion.velocity) * std::pow(volume, 1 - 2. / dimension) +
          6 * square(motion.angular_velocity) * volume;
+}
+
+RigidMass RigidMass::turned(const std::array<Real3, 3> &R) const {
+  const auto &[xx, yy, zz, yz, xz, xy] = second;
+  const std::array<Real3, 3> S{{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}};
+  const auto rotated = [&](int a, int b) {
+    double sum = 0;
+    for (int m = 0; m < 3; ++m)
+      for (int n = 0; n < 3; ++n) sum += R[a][m] * S[m][n] * R[b][n];
+    return sum;
+  };
+  RigidMass now{volume, {}, {rotated(0, 0), rotated(1, 1), rotated(2, 2), rotated(1, 2), rotated(0, 2), rotated(0, 1)}};
+  for (int a = 0; a < 3; ++a)
+    for (int m = 0; m < 3; ++m) now.first[a] += R[a][m] * first[m];
+  return now;
 }
 
 // Integrates the acceleration over the body.

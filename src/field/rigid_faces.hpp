@@ -46,6 +46,14 @@ struct RigidMotion {
   Real3 frame_velocity(const Real3 &r, double time) const;
   /// Returns the acceleration at r from its centre.
   Real3 acceleration(const Real3 &r, double time) const;
+  /// Whether fluid beside its surface needs the rate of (28b): it travels, or its velocity changes.
+  bool changes_frame() const {
+    return travels() || (velocity != Real3{} && of_velocity.frequency != 0) ||
+           (angular_velocity != Real3{} && of_rotation.frequency != 0);
+  }
+  /// Returns the rate of change of the velocity of its surface at r from its centre, in the frame in which its shape is
+  /// at rest. In contrast to acceleration() it includes motion along its own surface.
+  Real3 surface_acceleration(const Real3 &r, double time) const;
   /// Returns the angular velocity times a factor for a body that rotates through the grid, 0 for others.
   Real3 rotation_vector(double factor) const {
     Real3 w{};
@@ -60,6 +68,8 @@ struct RigidMass {
   double volume = 0;
   Real3 first{};                   ///< integral of r
   std::array<double, 6> second{};  ///< integral of r r^T: xx, yy, zz, yz, xz, xy
+  /// Returns the moments of the body rotated by the matrix R, in the same axes.
+  RigidMass turned(const std::array<Real3, 3> &R) const;
   /// Returns an estimate of the dissipation at the viscosity 1 and the largest velocities of its motion: that of a
   /// sphere of its volume in Stokes flow, in 2-D of a cylinder.
   double dissipation(const RigidMotion &motion, int dimension) const;

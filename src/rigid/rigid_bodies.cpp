@@ -166,17 +166,29 @@ void RigidBodies::note_contact(int image, int other) {
   contact_ = std::max(contact_, {std::min(one.index, two.index), std::max(one.index, two.index)});
 }
 
-// Marks the faces inside a body from a file: those where phi, averaged to the face, is above 1/2.
+// Number of periods from the nearest image of a body to a face at `way` cells from the body; the seam half a period
+// away belongs to one side, so that a shift of the scene does not change it.
+double RigidBodies::periods(int d, double way) const {
+  return domain_.is_wall(d) ? 0 : std::floor(way / domain_.domain_cells()[d] + 0.5);
+}
+
+// Marks the faces inside a body from a file, those where phi, averaged to the face, is above 1/2, with its nearest
+// image.
 void RigidBodies::mark_file(int a, ConstView phi, int index) {
   if (!level_[a]) level_[a] = Field(domain_, 1);
   const View inside = inside_[a][0], level = level_[a][0];
   const std::ptrdiff_t step = phi.stride(a);
+  const Real3 &centre = faces_.bodies[image_of(index, {0, 0, 0})].centre;
   for_points(domain_.points(at_face[a]), [&](int i, int j, int k) {
     const double *q = phi.row(j, k) + i;
     const double value = 0.5 - 0.5 * (q[0] + q[-step]);
     if (inside(i, j, k) != 0) return;
     level(i, j, k) = value;
-    if (value < 0) inside(i, j, k) = 1 + image_of(index, {0, 0, 0});
+    if (value >= 0) return;
+    const Real3 place = face_position(domain_, a, i, j, k);
+    Int3 shift{};
+    for (int d = 0; d < domain_.dimension(); ++d) shift[d] = -static_cast<int>(periods(d, place[d] - centre[d]));
+    inside(i, j, k) = 1 + image_of(index, shift);
   });
 }
 
@@ -339,8 +351,7 @@ PetscErrorCode RigidBodies::measure_gaps(const std::vector<Phase> &phases) {
     sums.add(per_body * index + per_component * a, part);
     for (int d = 0; d < dimension; ++d) {
       double arm = place[d] - centre[d];
-      if (nearest && body && body->ends(d) && !domain_.is_wall(d))
-        arm -= domain_.domain_cells()[d] * std::round(arm / domain_.domain_cells()[d]);
+      if (nearest && (!body || body->ends(d))) arm -= domain_.domain_cells()[d] * periods(d, arm);
       sums.add(per_body * index + per_component * a + 1 + d, part * arm * domain_.spacing()[d]);
     }
   };
@@ -398,22 +409,6 @@ void RigidBodies::set_gaps(const std::vector<double> &moments) {
 namespace {
 
 constexpr double most_lost = 0.05;  // largest relative loss of volume of a travelling body from a file
-
-// Moments of a rotated body in the coordinates of the box.
-RigidMass turned(const RigidMass &mass, const Rotation &R) {
-  const auto &[xx, yy, zz, yz, xz, xy] = mass.second;
-  const Rotation S{{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}};
-  const auto second = [&](int a, int b) {
-    double sum = 0;
-    for (int m = 0; m < 3; ++m)
-      for (int n = 0; n < 3; ++n) sum += R[a][m] * S[m][n] * R[b][n];
-    return sum;
-  };
-  RigidMass now{mass.volume, {}, {second(0, 0), second(1, 1), second(2, 2), second(1, 2), second(0, 2), second(0, 1)}};
-  for (int a = 0; a < 3; ++a)
-    for (int m = 0; m < 3; ++m) now.first[a] += R[a][m] * mass.first[m];
-  return now;
-}
 
 }  // namespace
 
@@ -480,9 +475,11 @@ void RigidBodies::set_position(int index, const BodyPlace &place) {
   if (source.surface) {
     source.body = std::make_unique<PlacedBody>(*source.surface, domain_.domain_shape(), place);
     centre = source.body->centre();
+  } else {
+    for (int d = 0; d < domain_.dimension(); ++d) centre[d] -= domain_.domain_cells()[d] * periods(d, centre[d]);
   }
   const int motion = faces_.bodies[images * index].motion;
-  if (faces_.motions[motion].turning) faces_.masses[index] = turned(species_[motion].mass, rotation(place.orientation));
+  if (faces_.motions[motion].turning) faces_.masses[index] = species_[motion].mass.turned(rotation(place.orientation));
   for (int image = 0; image < images; ++image) {
     const Int3 shift{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
     Real3 &image_centre = faces_.bodies[images * index + image].centre;

@@ -67,6 +67,7 @@ private:
   void for_faces(int a, int index, const Visit &visit);
   void mark(int a, int index);
   void clear(int a, int index);
+  double periods(int d, double way) const;
   void mark_file(int a, ConstView phi, int index);
   double crossing(int image, const Real3 &outside, const Real3 &inside, double level_outside,
                   double level_inside) const;

@@ -7,28 +7,6 @@
 #include <algorithm>
 
 namespace eulastic {
-namespace {
-
-// The end of a link of a cut face: the image of a body that contains the neighbour, and the place of the cut face
-// beside it, in cells. The neighbour's place is wrapped into the box.
-struct LinkEnd {
-  int body;
-  Real3 place;
-};
-LinkEnd link_end(const Box &box, const RigidFaces &faces, int a, Int3 face, int link) {
-  const int d = link / 2, step = link % 2 ? 1 : -1, N = box.domain_cells()[d];
-  LinkEnd end{0, face_position(box, a, face[0], face[1], face[2])};
-  const double least = (d == a ? 0 : 0.5) - 0.5 * N, neighbour = end.place[d] + step;
-  if (!box.is_wall(d) && neighbour < least) end.place[d] += N;
-  if (!box.is_wall(d) && neighbour > least + N - 1) end.place[d] -= N;
-  face[d] += step;
-  const RigidFaces::Row row = faces.row(a, face[1], face[2]);
-  for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-    if (run->begin <= face[0] && face[0] < run->end) end.body = run->body;
-  return end;
-}
-
-}  // namespace
 
 RigidImpulse::RigidImpulse(const Domain &domain, const RigidFaces &faces, const Fluid &fluid)
     : domain_(domain), faces_(faces), fluid_(fluid) {
@@ -124,7 +102,7 @@ double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, 
   return correction;
 }
 
-// Sets the rate that cut faces miss because they get only their share of it, in the frame of travelling bodies.
+// Sets the rate that cut faces miss because they get only their share of it, in the frame of (28b).
 void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_star) {
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *before = velocity[a].row(j, k), *after = velocity_star[a].row(j, k);
@@ -133,11 +111,8 @@ void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_s
       if (!owned(domain_, a, i)) continue;
       double rate = (after[i] - before[i]) / dt_;
       double &missing = missing_rate_[a][index(a, *cut)];
-      if (motion_of(cut->body).travels()) {
-        rate -= rate_in_body_frame(domain_, faces_, *cut, a, face_position(domain_, a, i, j, k), time_, dt_, before + i,
-                                   strides(velocity[a]));
-        if (fluid_.inertia) missing = curved_advection(a, *cut, j, k, velocity);
-      }
+      if (changes_frame(faces_, *cut)) rate -= rate_in_frame(domain_, faces_, *cut, a, {i, j, k}, time_, dt_, velocity);
+      if (fluid_.inertia && motion_of(cut->body).travels()) missing = curved_advection(a, *cut, j, k, velocity);
       missing += (1 / cut->share - 1) * rate;
     }
   });
@@ -187,10 +162,11 @@ void RigidImpulse::add_cut(int a, const RigidFaces::Cut &cut, int j, int k, Exac
       faces_, cut, a, [this](int motion) { return means_.factors[motion]; }, wall);
   for (int link = 0; link < 2 * domain_.dimension(); ++link) {
     if (!(cut.walls >> link & 1U)) continue;
-    const auto [body, place] = link_end(domain_, faces_, a, {cut.i, j, k}, link);
+    const int body = cut.of_link[link];
+    const Real3 place = position_at_link(domain_, a, {cut.i, j, k}, link);
     Real3 neighbour = place;
     neighbour[link / 2] += link % 2 ? 1 : -1;
-    const auto body_velocity = [&, body = body](const Real3 &at) {
+    const auto body_velocity = [&](const Real3 &at) {
       const auto &[along, turning] = means_.factors[faces_.bodies[body].motion];
       return faces_.velocity(a, faces_.bodies[body], at, domain_.spacing(), along, turning);
     };

@@ -105,14 +105,33 @@ inline Viscous viscous_rates(const Box &box, const RigidFaces &faces, const Rigi
   return {cut.laplacian(u, s, box.dimension(), wall), regular_laplacian(box, u, s)};
 }
 
-// The rate dV/dt - V.grad u of (28b) beside a travelling body, with V its velocity at `place`: that of a flow at rest
-// in the frame of the body. Upwind and half implicit: where the surface approaches, u - u_s decreases with the
-// distance.
+// Position of a cut face as the body at the end of a link sees it: beside the neighbour inside, whose position is
+// wrapped into the box.
+inline Real3 position_at_link(const Box &box, int a, const Int3 &face, int link) {
+  const int d = link / 2, N = box.domain_cells()[d];
+  Real3 place = face_position(box, a, face[0], face[1], face[2]);
+  const double least = (d == a ? 0 : 0.5) - 0.5 * N, neighbour = place[d] + (link % 2 ? 1 : -1);
+  if (!box.is_wall(d) && neighbour < least) place[d] += N;
+  if (!box.is_wall(d) && neighbour > least + N - 1) place[d] -= N;
+  return place;
+}
+
+// Whether (28b) of a cut face differs from its share of the rate.
+inline bool changes_frame(const RigidFaces &faces, const RigidFaces::Cut &cut) {
+  for (int link = 0; link < 6; ++link)
+    if (cut.walls >> link & 1U && faces.motions[faces.bodies[cut.of_link[link]].motion].changes_frame()) return true;
+  return false;
+}
+
+// The rate Z = a - V_b.grad u of (28b) for the body at the end of a link: that of a flow at rest in the frame of the
+// body. Upwind and half implicit: where the surface approaches, u - u_s decreases with the distance.
 inline double rate_in_body_frame(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a,
-                                 Real3 place, double time, double dt, const double *u, const Strides &s) {
-  const RigidBody &body = faces.bodies[cut.body];
+                                 const Int3 &face, int of_link, double time, double dt, const Field &velocity) {
+  const RigidBody &body = faces.bodies[cut.of_link[of_link]];
   const RigidMotion &motion = faces.motions[body.motion];
-  const double middle = time + 0.5 * dt;
+  const double middle = time + 0.5 * dt, *u = velocity[a].row(face[1], face[2]) + face[0];
+  const Strides s = strides(velocity[a]);
+  Real3 place = position_at_link(box, a, face, of_link);
   for (int d = 0; d < box.dimension(); ++d) place[d] += faces.ahead[body.motion][d];
   const Real3 r = RigidFaces::arm(body, place, box.spacing()), frame = motion.frame_velocity(r, middle);
   double wall[6], sum = 0, stiffness = 0;
@@ -125,7 +144,25 @@ inline double rate_in_body_frame(const Box &box, const RigidFaces &faces, const 
     sum += rate * (upwind - u[0]);
     stiffness += rate;
   }
-  return motion.acceleration(r, middle)[a] + sum / (1 + 0.5 * dt * stiffness);
+  return motion.surface_acceleration(r, middle)[a] + sum / (1 + 0.5 * dt * stiffness);
+}
+
+// The rate Z of a cut face. Where its links end at several bodies, their rates are weighted with 1 / (theta h^2), so
+// that a surface that is very close prevails: u follows it, as its friction in (28) demands.
+inline double rate_in_frame(const Box &box, const RigidFaces &faces, const RigidFaces::Cut &cut, int a,
+                            const Int3 &face, double time, double dt, const Field &velocity) {
+  int known = -1;
+  double first = 0, rate = 0, differences = 0, weights = 0;
+  for (int link = 0; link < 6; ++link) {
+    if (!(cut.walls >> link & 1U)) continue;
+    const int body = cut.of_link[link];
+    if (body != known) rate = rate_in_body_frame(box, faces, cut, a, face, link, time, dt, velocity);
+    if (known < 0) first = rate;
+    known = body;
+    differences += cut.link[link] * (rate - first);  // exactly 0 for a single body
+    weights += cut.link[link];
+  }
+  return first + differences / weights;
 }
 
 }  // namespace eulastic

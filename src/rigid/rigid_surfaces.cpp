@@ -19,9 +19,8 @@ void apply_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscos
       if (!owned(box, a, cut->i)) continue;
       const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       out[cut->i] = cut->share * (out[cut->i] + (viscosity * rates.cut - included * rates.regular));
-      if (faces.motions[faces.bodies[cut->body].motion].travels())
-        out[cut->i] += (1 - cut->share) * rate_in_body_frame(box, faces, *cut, a, face_position(box, a, cut->i, j, k),
-                                                             time, dt, u + cut->i, strides(velocity[a]));
+      if (changes_frame(faces, *cut))
+        out[cut->i] += (1 - cut->share) * rate_in_frame(box, faces, *cut, a, {cut->i, j, k}, time, dt, velocity);
       if (m) m[cut->i] *= cut->share;
     }
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -72,6 +71,8 @@ void apply_rigid_surfaces_euler(const Box &box, const RigidFaces &faces, double 
       const Viscous rates = viscous_rates(box, faces, *cut, a, time, u + cut->i, strides(velocity[a]));
       const double change = (out[cut->i] - u[cut->i]) + dt * (viscosity * rates.cut - included * rates.regular);
       out[cut->i] = u[cut->i] + cut->share * change;
+      if (changes_frame(faces, *cut))
+        out[cut->i] += (1 - cut->share) * dt * rate_in_frame(box, faces, *cut, a, {cut->i, j, k}, time, dt, velocity);
     }
   });
   scope.flops(cut_faces * (viscous_rates_flops(box.dimension()) + 7));
@@ -183,28 +184,22 @@ namespace {
 // The sum over links that end at a surface of (u - V) ((u_inside - u) / h^2 - (u_surface - u) / (theta h^2)), with V
 // the velocity of the link's body at the face: what the stress of the whole grid has too much, per viscosity and
 // volume.
-double excess_at_cut(const Domain &domain, const RigidFaces &faces, const RigidFaces::Cut &cut, int a,
-                     const Real3 &place, double time, const double *u, const Strides &s) {
+double excess_at_cut(const Domain &domain, const RigidFaces &faces, const RigidFaces::Cut &cut, int a, const Int3 &face,
+                     double time, const Field &velocity) {
   const Real3 &h = domain.spacing();
-  const auto of_body = [&](int image) {
-    const RigidBody &body = faces.bodies[image];
-    const RigidMotion &motion = faces.motions[body.motion];
-    return faces.velocity(a, body, place, h, motion.of_velocity.at(time), motion.of_rotation.at(time));
-  };
-  bool same = true;  // one body at all links: the sum is that of (28), as links without a surface cancel
-  for (int link = 0; link < 6; ++link)
-    same = same && (!(cut.walls >> link & 1U) || faces.bodies[cut.of_link[link]].index == faces.bodies[cut.body].index);
-  if (same) {
-    const Viscous rates = viscous_rates(domain, faces, cut, a, time, u, s);
-    return (*u - of_body(cut.body)) * (rates.regular - rates.cut);
-  }
+  const Strides s = strides(velocity[a]);
+  const double *u = velocity[a].row(face[1], face[2]) + face[0];
   double wall[6], sum = 0;
   surface_velocity(faces, cut, a, time, wall);
-  for (int link = 0; link < 6; ++link) {
+  for (int link = 0; link < 2 * domain.dimension(); ++link) {
     if (!(cut.walls >> link & 1U)) continue;
+    const RigidBody &body = faces.bodies[cut.of_link[link]];
+    const RigidMotion &motion = faces.motions[body.motion];
+    const double V = faces.velocity(a, body, position_at_link(domain, a, face, link), h, motion.of_velocity.at(time),
+                                    motion.of_rotation.at(time));
     const int d = link / 2;
     const double inside = u[link % 2 ? s[d] : -s[d]];
-    sum += (*u - of_body(cut.of_link[link])) * ((inside - *u) / (h[d] * h[d]) - cut.link[link] * (wall[link] - *u));
+    sum += (*u - V) * ((inside - *u) / (h[d] * h[d]) - cut.link[link] * (wall[link] - *u));
   }
   return sum;
 }
@@ -245,9 +240,7 @@ PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces 
       if (!owned(domain, a, i)) continue;
       const double volume = volume_of_face(domain, a, side_of_face(domain, a, i, j, k));
       if (volume == 0) continue;
-      const double *u = velocity[a].row(j, k) + i;
-      const Real3 place = face_position(domain, a, i, j, k);
-      sums.add(0, volume * excess_at_cut(domain, faces, *cut, a, place, time, u, strides(velocity[a])));
+      sums.add(0, volume * excess_at_cut(domain, faces, *cut, a, {i, j, k}, time, velocity));
     }
     // Subtract the friction of faces inside on boundaries of the box, where a body has no surface.
     for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
@@ -262,7 +255,7 @@ PetscErrorCode measure_rigid_dissipation(const Domain &domain, const RigidFaces 
         sums.add(0, -volume_of_face(domain, a, side_of_face(domain, a, i, j, k)) *
                         shear_between_bodies(domain, faces, a, *run, i, j, k, velocity));
   });
-  scope.flops(cut_faces * (viscous_rates_flops(domain.dimension()) + 10));
+  scope.flops(cut_faces * 40);
   PetscCall(sums.reduce(domain.comm(), dissipation));
   *dissipation *= fluid.viscosity * domain.cell_volume();
   PetscFunctionReturn(0);

@@ -20,7 +20,8 @@ struct RklStage;
 void advect_from_surfaces(const Box &box, const RigidFaces &faces, double time, double epsilon, double scale,
                           const Field &velocity, Field *advection, Field &rate);
 /// Completes `rate`, which contains `included` of the viscosity: cut faces get (28), scaled by their share, and beside
-/// travelling bodies (28b) over a step of dt; faces inside get 0. `slope` (may be null) is scaled by the share, too.
+/// bodies that travel or change their velocity (28b) over a step of dt; faces inside get 0. `slope` (may be null) is
+/// scaled by the share, too.
 void apply_rigid_surfaces(const Box &box, const RigidFaces &faces, double viscosity, double included, double time,
                           double dt, const Field &velocity, Field &rate, Field *slope);
 /// Does the same for v* = v + dt rate, (7), without travelling bodies.

@@ -7,6 +7,9 @@ import pathlib
 import sys
 import unittest
 
+import h5py
+import numpy
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 sys.dont_write_bytecode = True
 from scene_case import SceneCase  # noqa: E402
@@ -46,6 +49,68 @@ class Balances(SceneCase):
             self.assertLess(abs(row.energy_lost), .4 * row.wall_power * row.time)
             found.append(row.viscous_dissipation)
         self.assertAlmostEqual(found[0], found[1], delta=1e-9)
+
+    def test_slabs_that_slide_at_a_changing_rate(self):
+        """Stokes' second problem between a slab and its image: the flow that oscillates with the walls. One surface, or the other one in the
+        mirrored scene, is .001 cells from a face, whose velocity must follow it."""
+        end, omega, nu = .8, 10, .2
+        rows = []
+        for axis, velocity, interval in (("y", "1,0,0", ".2188,.7"), ("x", "0,1,0", ".2188,.7"), ("y", "1,0,0", ".3,.7812")):
+            rows.append(self.last(f"slide{len(rows)}", *BOX, *(
+                f"-time_end {end} -fluid_viscosity {nu} -species s -s_shape slab -s_axis {axis} -s_interval {interval} -s_law rigid "
+                f"-s_velocity {velocity} -s_velocity_angular_frequency {omega}").split()))
+        width = 1 - (.7 - .2188)
+        at = numpy.linspace(-width / 2, width / 2, 2001)
+        wave = (1j * omega / nu)**.5
+        shear = (numpy.exp(1j * omega * end) * wave * numpy.sinh(wave * at) / numpy.cosh(wave * width / 2)).real
+        exact = nu * numpy.mean(shear**2) * width
+        for row in rows:
+            self.assertAlmostEqual(row.viscous_dissipation, exact, delta=.03 * exact)
+            self.assertAlmostEqual(row.viscous_dissipation, rows[0].viscous_dissipation, delta=1e-9 * exact)
+            self.assertAlmostEqual(row.energy_lost, rows[0].energy_lost, delta=1e-9 * exact)
+
+    def test_cylinders_that_turn_at_a_changing_rate(self):
+        """On the coarse grid faces are .001 cells from the surface; the dissipation is that of the fine grid nevertheless, with all methods,
+        and the energy budget closes."""
+        turning = "-grid_length 1,1,1 -time_end .6 -fluid_viscosity .1 -species c -c_shape cylinder -c_axis z -c_radius .2 -c_law rigid " \
+                  "-c_angular_velocity 0,0,5 -c_angular_velocity_angular_frequency 10".split()
+        fine = self.last("fine", "-grid_cells", "48,48,1", *turning)
+        for name, share, *options in ("fast", .01), ("smac", .01, "-pressure_solver", "smac"), ("classic", .04, "-method", "classic"):
+            series = self.run_program(name, "-grid_cells", "16,16,1", *turning, *options).series
+            self.assertAlmostEqual(series[-1].viscous_dissipation, fine.viscous_dissipation, delta=share * fine.viscous_dissipation, msg=name)
+            started = series[int(numpy.searchsorted(series.time, .2))]
+            supplied = fine.wall_power * (.6 - started.time)  # nearly its largest value
+            self.assertLess(abs(series[-1].energy_lost - started.energy_lost), 2.5 * share * supplied, name)
+
+    def test_bodies_across_a_periodic_boundary(self):
+        """A shift of the scene, so that a surface lies beside a periodic boundary, changes nothing but round-off and the pressure's tolerance."""
+        disc = "-s_shape cylinder -s_axis z -s_radius .19 -s_angular_velocity 0,0,5"
+        ellipse = "-s_shape ellipsoid -s_semi_axes .3,.15,.15 -s_angular_velocity 0,0,3 -s_angular_velocity_angular_frequency 7"
+        for name, body, shift in ("disc", disc, 5 / 16), ("ellipse", ellipse, 1 / 4):
+            rows = [self.last(f"{name}{n}", "-grid_cells", "16,16,1", *(
+                f"-time_end .1 -fluid_viscosity .1 -acm_tolerance 1e-9 -species s -s_law rigid {body} -s_centre {x},{y},.5").split())
+                for n, (x, y) in enumerate(((.5, .5), (.5 - shift, .5), (.5, .5 - shift)))]
+            for row in rows[1:]:
+                for column in "viscous_dissipation", "wall_power", "energy_lost":
+                    self.assertAlmostEqual(row[column], rows[0][column], delta=1e-6 * row.viscous_dissipation, msg=f"{name}: {column}")
+
+    def test_torque_of_voxels_across_a_periodic_boundary(self):
+        """It is that of the nearest image about the centre, wherever the scene begins."""
+        solid = numpy.zeros((1, 16, 16))
+        solid[0, 5:11, 5:9] = solid[0, 5:8, 5:12] = 1  # an L
+        solid[0, 7, 11] = .7
+        torques = []
+        for n, (x, y) in enumerate(((0, 0), (8, 0), (0, 8), (-7, 7))):
+            with h5py.File(self.room / f"solid{n}.h5", "w") as file:
+                file["solid"] = numpy.roll(solid, (y, x), (1, 2))
+            centre = (.45 + x / 16) % 1, (.48 + y / 16) % 1
+            run = self.run_program(f"voxels{n}", *BOX, *(
+                f"-time_end .1 -fluid_viscosity 1 -acm_tolerance 1e-9 -body_force 1,.5,0 -species s -s_law rigid -s_shape voxels "
+                f"-s_voxels {self.room}/solid{n}.h5 -s_voxels_spacing .0625,.0625,1 -s_centre {centre[0]},{centre[1]},.5").split())
+            torques.append(run.bodies.torque[:, 0, 2])
+        self.assertGreater(abs(torques[0][-1]), .003)
+        for torque in torques[1:]:
+            numpy.testing.assert_allclose(torque, torques[0], atol=1e-6)
 
     def test_rigid_bodies_move_without_series_of_bodies(self):
         """The power of a body that turns is in the energy budget whether bodies.h5 is written or not."""
