@@ -324,8 +324,11 @@ class Docs(unittest.TestCase):
         self.assertIn(f"within {max(map(float, errors)):g} % of boundary-integral", readme)
         sooner = re.search(r"^\| fast \|(?:[^|]*\|){5} *([\d.]+) \|$", text["performance"], re.MULTILINE)[1]
         self.assertIn(f"{int(float(sooner))} times sooner", readme)
-        two = re.search(r"^\| fast, red cells \|(?:[^|]*\|){2} *([\d.]+) \(", text["performance"], re.MULTILINE)[1]
-        self.assertIn(f"two ranks are {two} times as fast as one, at 128^3", readme)
+        scaling = (ROOT / "docs/scaling.md").read_text()
+        ranks, copies = (f"{float(re.search(rf'^.*{row}.*$', scaling, re.MULTILINE)[0].split('|')[column]):.1f}" for row, column in (
+            (r"\| channel_rbc \| 128 x 128 x 128 \| fast \|", 8), (r"\| copies \|[^|]*\| fast \|", 8)))
+        self.assertIn(f"16 ranks are {ranks} times as fast as one, at 128^3", readme)
+        self.assertIn(f"reach {copies}", " ".join(readme.split()))
 
     def test_messages_of_questions_are_those_of_the_program(self):
         """The longest run of words of every quoted message of questions.md stands in the sources."""
