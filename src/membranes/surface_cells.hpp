@@ -31,7 +31,7 @@ public:
   /// Finds the surface from phi with five ghosts. Collective on the grid.
   PetscErrorCode find(const Phase &phase, Field &fields);
   /// Returns phi of the phase as the surface is found from it: a body ends at a solid boundary, although phi continues
-  /// behind it. `copy` is overwritten if the body is beside one. `phi` is valid as long as `copy`.
+  /// behind it. If the body is beside one, `copy` is overwritten and returned.
   ConstView fraction_within_walls(const Phase &phase, View copy) const;
   /// The nearest cells first, then the layers around them. Nearest cells include up to four ghost layers, each further
   /// layer one less.
