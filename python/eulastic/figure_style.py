@@ -3,6 +3,7 @@ colour vision tell apart (Okabe and Ito, Color Universal Design, 2008). Importin
 import io
 
 import matplotlib
+import numpy
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -68,6 +69,21 @@ def least_range(axis, part=1e-3):
         axis.set_ylim((low + high) / 2 - 0.05 * size, (low + high) / 2 + 0.05 * size)
 
 
+def with_palette(picture, colours):
+    """Returns the picture with a palette of this many colours, those of the style among them: of the colours that are frequent alone,
+    a grey would replace that of a thin curve."""
+    from PIL import Image
+    kept = [[round(255 * part) for part in matplotlib.colors.to_rgb(colour)] for colour in (*COLOURS, EXACT["color"], "black", "white")]
+    frequent = numpy.reshape(picture.quantize(colours - len(kept)).getpalette()[:3 * (colours - len(kept))], (-1, 3))
+    palette = numpy.concatenate([kept, frequent])
+    found, where = numpy.unique(numpy.asarray(picture).reshape(-1, 3) @ [1 << 16, 1 << 8, 1], return_inverse=True)
+    found = numpy.stack([found >> 16, found >> 8 & 255, found & 255], axis=1)
+    nearest = ((found[:, None] - palette) ** 2).sum(axis=2).argmin(axis=1).astype("u1")
+    image = Image.fromarray(nearest[where].reshape(picture.height, picture.width), "P")
+    image.putpalette(palette.astype("u1").tobytes())
+    return image
+
+
 def save(figure, path, colours=None, **options):
     """A file of the figure, and closes it. `colours`: a PNG of a palette of so many, a quarter of the size; `options` are of
     matplotlib's savefig."""
@@ -76,7 +92,7 @@ def save(figure, path, colours=None, **options):
         from PIL import Image
         picture = io.BytesIO()
         figure.savefig(picture, format="png", **options)
-        Image.open(picture).convert("RGB").quantize(colours).save(path, optimize=True)
+        with_palette(Image.open(picture).convert("RGB"), colours).save(path, optimize=True)
     else:
         figure.savefig(path, **({"pil_kwargs": {"optimize": True}} if path.suffix == ".png" else {}), **options)
     plt.close(figure)

@@ -6,9 +6,12 @@ import sys
 import tempfile
 import unittest
 
+from PIL import Image
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / folder) for folder in ("scripts", "scripts/lib", "scripts/studies", "tests/support")]
 sys.dont_write_bytecode = True
+from eulastic import figure_style  # noqa: E402
 from full import FULL, full  # noqa: E402
 from validation import exact, report  # noqa: E402
 from validation.case import Measure, Setting  # noqa: E402
@@ -79,6 +82,24 @@ class Validation(unittest.TestCase):
         self.assertEqual(resumed.summary["state_hash"], whole.summary["state_hash"])
         self.assertEqual(resumed.series.time[0], 0)
         self.assertFalse(any(other.glob("checkpoint_*.h5")))
+
+
+class Pictures(unittest.TestCase):
+    def test_colours_of_thin_curves_are_kept(self):
+        """A palette has the colours of the style, however few pixels they have."""
+        figure, (axis,) = figure_style.panels(1)
+        for n, colour in enumerate(figure_style.COLOURS):
+            axis.plot([0, 1], [n, n + 1], color=colour, lw=1, zorder=2)
+            axis.plot([0, 1], [n, n + 0.9], **figure_style.EXACT)
+        with tempfile.TemporaryDirectory() as room:
+            path = pathlib.Path(room) / "figure.png"
+            figure_style.save(figure, path, colours=32)
+            with Image.open(path) as picture:
+                self.assertEqual(picture.width, 1600)
+                found = {"#%02X%02X%02X" % colour: count for count, colour in picture.convert("RGB").getcolors(32)}
+        for colour in figure_style.COLOURS:
+            self.assertGreater(found.get(colour, 0), 300, colour)
+        self.assertGreater(found["#FFFFFF"], 0.5 * sum(found.values()))
 
 
 class Verdicts(unittest.TestCase):

@@ -50,7 +50,7 @@ def at_rest(name, title, cells, settings, quick, early):
                      run.series.surface_energy[-1] / TENSION / (2 * numpy.pi if run.cells[2] == 1 else 4 * numpy.pi)),
                      {"fast": lambda n: .005 * (16 / n)**2}, "error of planes, of order (h/R)^2", 1, True)),
                 lambda run: ((run.series.time[1:], run.series.speed_max[1:] * VISCOSITY / TENSION), ([0, 6 / TENSION], [1e-4, 1e-4])),
-                ("t", f"largest mu u/sigma, {name} (asked for: 1e-4)"), scales={"yscale": "log"})
+                ("t", f"largest mu u/sigma, {name} at rest; reference: goal"), scales={"yscale": "log"})
 
 
 # In shear

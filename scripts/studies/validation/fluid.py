@@ -227,7 +227,7 @@ CASES = (
          every((32, 64)), every((32, 64), methods=("fast",), solvers=("acm",)),
          (Measure("oscillating wall: the same error", oscillation_error(stokes), HALF_PERCENT, PHASE,
                   order={"fast": 1.9, "classic": 1.9}),),
-         oscillation_line(stokes), ("y", "u at 5/8 of a period")),
+         oscillation_line(stokes), ("y", "oscillating wall: u at 5/8 of a period")),
     cavity(100, -.214043, .179574, -.253805, 20, every((32, 64, 128), (32, 64)),
            every((32, 64), methods=("fast",), solvers=("acm",))),
     cavity(400, -.328757, .303852, -.454089, 60, every((64, 128), methods=("fast",), solvers=("acm",)), ()),
