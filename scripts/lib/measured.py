@@ -13,6 +13,11 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 LINE = re.compile(r"^> Made with eulastic .*\n", re.M)
 
 
+def digits(value, number=2):
+    """Returns the value with this number of significant digits, large ones without an exponent: 1100, not 1.1e+03."""
+    return f"{float(f'{value:.{number}g}'):g}"
+
+
 def machine():
     try:
         info = pathlib.Path("/proc/cpuinfo").read_text()

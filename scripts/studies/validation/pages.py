@@ -48,8 +48,8 @@ goal that was set without a theory; the letter refers to the list below the tabl
 grid in the row. Where a row misses its tolerance for a known reason, "kept" is the bound beyond which it fails. Rows without a
 tolerance are reported, not judged; most of them are results of the classic method, for comparison with the fast one.
 
-In the pictures a broad grey line is an exact solution or a known limit, and circles are published values, with their errors
-where these are published. The other lines are the finest run of each method and pressure solver; the number behind them is "at".
+In the pictures a broad grey line is an exact solution, a known limit, or what the axis names; circles are published values, with
+their errors where these are published. The other lines are the finest run of each method and pressure solver; the number behind them is "at".
 {sections}"""
 
 # Page below validation/: (title, whether a case belongs to it, what "at" is in some of its cases).

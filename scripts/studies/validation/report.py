@@ -4,6 +4,7 @@ import textwrap
 
 import numpy
 from eulastic import figure_style as style
+from measured import digits
 
 from .pages import HEADER, WORDS, rows_of, updated, write_page  # noqa: F401
 
@@ -33,8 +34,8 @@ def judge(case, setting, runs, measure):
     limit = of_setting(measure.tolerance)
     limit = limit(key) if callable(limit) else limit
     order = observed_order(ladder)
-    shown = " ".join(f"{e:.2g}" for _, e in ladder) + (f" ({order:.2f})" if order is not None else "")
-    percent = (lambda e: f"{100 * e:.2g} %") if measure.relative else (lambda e: f"{e:.2g}")
+    shown = " ".join(f"{e:.2g}" for _, e in ladder) + (f" ({order:.2f})" if order is not None and not math.isnan(order) else "")
+    percent = (lambda e: f"{digits(100 * e)} %") if measure.relative else (lambda e: f"{e:.2g}")
     verdict = None if limit is None else bool(error(ours) <= limit)  # a nan fails
     shown_limit, why = "" if limit is None else percent(limit), measure.why
     bound, reason = of_setting(measure.misses) or (None, "")
