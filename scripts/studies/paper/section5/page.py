@@ -119,7 +119,7 @@ Two causes of the gap can be separated:
    cells span the thickness of a red cell ([dimple.md](dimple.md)), and less than one spans the plasma between two of them.
 
 The vessel is not a cause: the flow rate of plasma alone is correct to {plasma}.{coarse}
-The period, two diameters, has not been varied.
+The period, 2.4 diameters, has not been varied.
 """
 
 TUBE = """
