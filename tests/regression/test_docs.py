@@ -330,6 +330,30 @@ class Docs(unittest.TestCase):
         self.assertIn(f"16 ranks are {ranks} times as fast as one, at 128^3", readme)
         self.assertIn(f"reach {copies}", " ".join(readme.split()))
 
+    def test_membranes_cost_and_converge_as_their_tables_say(self):
+        """The wall time of membranes relative to solid cells, on two pages, and the orders of capsules that method/membranes.md gives."""
+        def words(name):
+            return " ".join((ROOT / f"docs/{name}.md").read_text().split())
+        text = (ROOT / "docs/performance.md").read_text()
+        factor = round(float(re.search(r"^\| membranes \|.*\| ([\d.]+) \|$", text, re.MULTILINE)[1]))
+        times = f"about {['no', 'one', 'two', 'three', 'four', 'five'][factor]} times the wall time"
+        self.assertEqual(words("performance").count(times), 2)
+        self.assertIn(f"took {times}", words("comparison"))
+        self.assertIn("elastic **solids**", words("comparison"))
+        orders = re.findall(r"^\| [^|]*viscosity ratio [15] \| \d+ \| [\d.]+ % \| ([\d.]+) \|", text, re.MULTILINE)
+        self.assertEqual(len(orders), 4)
+        self.assertIn(f"is {min(orders)} to {max(orders)} for viscosity ratios of 1 and 5", words("method/membranes"))
+
+    def test_pages_agree_on_what_leaves_whole(self):
+        """README.md, the questions and the method; tests/regression/test_open_sides.py tests the program."""
+        readme, questions, method = (" ".join((ROOT / name).read_text().split()) for name in
+                                     ("README.md", "docs/howto/questions.md", "docs/method/boundaries.md"))
+        for text in readme, questions:
+            self.assertIn("Membranes, drops and bodies with a viscosity of their own are removed whole when", text)
+        self.assertIn("Drops with surface tension, membranes, and bodies with a viscosity of their own leave *whole*", method)
+        self.assertIn("anchored bodies cannot leave", readme)
+        self.assertIn("The run stops when an anchored body", method)
+
     def test_messages_of_questions_are_those_of_the_program(self):
         """The longest run of words of every quoted message of questions.md stands in the sources."""
         joined = "".join(re.sub(r'"\s*\n\s*"', "", path.read_text()) for path in sorted((ROOT / "src").rglob("*.cpp")))
