@@ -27,6 +27,7 @@ evidence = load("evidence")
 SHORT = "-grid_cells 16,16,16 -time_steps_max 2"
 FLAT = SHORT.replace("16,16,16", "16,16,1")
 OTHERS = {"python.md": FLAT, "vessel.md": "-grid_cells 30,16,16 -time_steps_max 2", "gallery.md": "-time_steps_max 2",
+          "adhesion.md": "-time_steps_max 2",  # the reach of bonds is at least a cell
           "long_run.md": "-grid_cells 16,16,1 -checkpoint_interval 30"}
 NO_COMMANDS = "tutorial.md", "gallery.md"  # scripts/dev/tutorial follows the one, a test below looks at the other
 NOT_RUN = {
