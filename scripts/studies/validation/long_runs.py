@@ -174,7 +174,7 @@ def passive(angle, courant, full, quick):
                 at(*full), at(*quick),
                 (Measure(f"{what}: change of D e^(2 i theta), relative to D", lost, reach(.06, .007, .001), WHY,
                          misses=kept("every step reconstructs the planes and cuts corners (docs/method.md, section 6)", .065, .009, .0015)),),
-                passive_line, ("t", f"D over its start, {angle}°, {courant}"))
+                passive_line, ("t", f"D over its start, {angle}°, CFL {courant}"))
 
 
 def circle_options(n, _):
