@@ -118,10 +118,10 @@ void ObstacleSolver::update_faces(const RigidFaces &faces) {
         for (int i = 0; i < n[0]; ++i)
           if (body[i] >= 0) open[i][face] = depth[i][face] = 0;
         const RigidFaces::Row beside = faces.row(d, row.j + (d == 1 && high), row.k + (d == 2 && high));
-        for (const RigidFaces::Cut *cut = beside.cuts; cut != beside.cuts_end; ++cut)
-          if (const int i = cut->i - shift; i >= 0 && i < n[0]) {
-            open[i][face] = cut->open;
-            depth[i][face] = 1 / (cut->link[2 * d + !high] * h[d] * h[d]);
+        for (const RigidFaces::Cut &cut : beside.cuts)
+          if (const int i = cut.i - shift; i >= 0 && i < n[0]) {
+            open[i][face] = cut.open;
+            depth[i][face] = 1 / (cut.link[2 * d + !high] * h[d] * h[d]);
           }
       }
     for (int i = 0; i < n[0]; ++i) {
