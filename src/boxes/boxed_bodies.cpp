@@ -272,7 +272,7 @@ PetscErrorCode BoxedBodies::give_surface_measures(const std::vector<BodyInBox> &
 PetscErrorCode BoxedBodies::reset_unresolved(const std::vector<double> &trace) {
   long count = 0;
   PetscFunctionBeginUser;
-  if (exist()) PetscCall(bodies_.reset_unresolved(trace, &count));
+  PetscCall(bodies_.reset_unresolved(trace, &count));
   flow_.now.forgotten += count;
   PetscFunctionReturn(0);
 }

@@ -56,8 +56,7 @@ public:
   PetscErrorCode place_markers() { return bodies_.place_markers(); }
   void keep_surfaces(bool keep) { bodies_.keep_surfaces(keep); }
   void mark_forced_rows(std::vector<char> *rows) const override { bodies_.mark_rows(rows); }
-  /// Resets B where the grid does not resolve it. `trace`: the largest tr B of every species. Collective.
-  PetscErrorCode reset_unresolved(const std::vector<double> &trace);
+  PetscErrorCode reset_unresolved(const std::vector<double> &trace) override;
 
   /// Bodies of this rank with the velocity, at its time: copies that have been moved over `behind`, or the bodies
   /// themselves if that is 0. Valid until forget_looks(). Collective.

@@ -151,13 +151,9 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
     line.neighbour.push_back(line.parent[i] + step);
     line.share.push_back(share);
   }
-  for (int I = -1; I <= coarse_owned; ++I) {
-    const int g = line.stride * (coarse_begin + I);
-    double low = 0, high = 0;
-    if (g >= 0 && g < fine_cells) neighbour(g, &low);
-    if (g + 1 >= 0 && g + 1 < fine_cells) neighbour(g + 1, &high);
-    line.share_low.push_back(low);
-    line.share_high.push_back(high);
+  for (int I = -1; I < coarse_owned; ++I) {
+    line.share_low.push_back(line.share[line.first + line.stride * I]);
+    line.share_high.push_back(line.share[line.first + line.stride * I + 1]);
   }
   return line;
 }

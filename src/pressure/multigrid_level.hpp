@@ -30,9 +30,8 @@ struct LineTransfer {
   std::array<std::vector<double>, 3> weight;
   LineOf<int> parent, neighbour;  ///< of fine cell i: its coarse cell, and the next one on the same side of the centre
   LineOf<double> share;           ///< weight of the neighbour in linear interpolation, 0 at walls
-  std::vector<double> share_low, share_high;  ///< [I + 1]: the same for both halves of I, -1 <= I <= cells
+  std::vector<double> share_low, share_high;  ///< [I + 1]: share of the first and second child of I, -1 <= I < cells
 
-  double *low() { return share_low.data() + 1; }
   const double *low() const { return share_low.data() + 1; }
   const double *high() const { return share_high.data() + 1; }
 };

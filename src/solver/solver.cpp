@@ -157,8 +157,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 
 PetscErrorCode Solver::reset_unresolved(const FlowExtremes &extremes) {
   PetscFunctionBeginUser;
-  if (auto *grid = part<GridBodies>()) PetscCall(grid->reset_unresolved(extremes.trace));
-  PetscCall(boxed_->reset_unresolved(extremes.trace));
+  for (FlowPart *part : flow_->parts) PetscCall(part->reset_unresolved(extremes.trace));
   PetscFunctionReturn(0);
 }
 
