@@ -140,7 +140,7 @@ PetscErrorCode BodiesAtSides::sum_fractions(Field *sum) {
   std::map<int, Phase> shown;
   PetscFunctionBeginUser;
   *sum = Field(flow_.domain, 1);
-  PetscCall(boxed_.show_all_fractions(&shown));
+  PetscCall(boxed_.find_all_fractions(&shown));
   for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
     const Phase &phase = flow_.now.phases[p].boxed ? shown[static_cast<int>(p)] : flow_.now.phases[p];
     const ConstView phi = phase.fraction[0];

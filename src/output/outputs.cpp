@@ -80,7 +80,7 @@ PetscErrorCode Outputs::measure() {
   PetscFunctionBeginUser;
   Measured &m = now_;
   if (m.time == solver_->state().time) PetscFunctionReturn(0);
-  PetscCall(look(&now_));
+  PetscCall(measure_all(&now_));
   if (solver_->bodies().first_volumes().empty()) {
     std::vector<double> volumes;
     for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);

@@ -102,7 +102,7 @@ private:
                          std::size_t b) const;
   /// Of times within the last step.
   PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
-  PetscErrorCode look(Measured *measured);
+  PetscErrorCode measure_all(Measured *measured);
   PetscErrorCode measure_energy(Measured *measured);
   void set_energy_scales(EnergyState *energy) const;
   PetscErrorCode await_row(double time_before);

@@ -166,7 +166,7 @@ PetscErrorCode Solver::step(double dt, const Observer &in_middle, const Observer
   const auto record_pressure = [&] {
     Flow &flow = *flow_;
     PetscFunctionBeginUser;
-    boxed_->forget_looks();
+    boxed_->discard_copies();
     if (!with_pressure) PetscFunctionReturn(0);
     flow.now.velocity.swap(flow.velocity_star);
     PetscCall(with_pressure());
