@@ -49,11 +49,7 @@ EULASTIC_CLONES void add_products(const Box &box, const RowPart &part, ConstView
 }
 
 void add_values(const Box &box, const RowPart &part, ConstView a, ExactSums &sums) {
-  for (const Segment &s : part.rows(box)) {
-    const double *p = a.row(s.j, s.k);
-    add_row_sums<1>(
-        s.size(), box.layout().begin[0], [=](int i, auto add) EULASTIC_BODY { add(0, p[i], 1); }, sums);
-  }
+  for (const Segment &s : part.rows(box)) sums.add_row(0, a.row(s.j, s.k), s.size(), box.layout().begin[0]);
 }
 
 // to = scale to + factor from, including one ghost layer.
