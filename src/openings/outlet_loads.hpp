@@ -26,7 +26,7 @@ public:
   void begin(const BoundaryConditions &sides, double middle, double dt, const std::vector<double> &flow);
   /// Ends the step: computes the pressures that are consistent with the loads and returns their differences from the
   /// predicted ones. `flow`: after the projection with the predicted pressures.
-  std::vector<double> settle(double dt, const std::vector<double> &flow);
+  std::vector<double> end(double dt, const std::vector<double> &flow);
   /// Computes increment = sum of changes times responses, including ghosts.
   void add_up(const Box &box, const std::vector<double> &changes, Field &increment) const;
 
