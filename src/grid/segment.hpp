@@ -11,7 +11,7 @@ struct Segment {
   int size() const noexcept { return i_end - i_begin; }
 };
 
-/// Consecutive elements that belong to someone else.
+/// A non-owning view of consecutive elements.
 template <class T>
 struct Slice {
   const T *first = nullptr, *last = nullptr;
