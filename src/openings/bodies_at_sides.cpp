@@ -75,13 +75,13 @@ PetscErrorCode BodiesAtSides::take_out_boxed(const std::vector<std::size_t> &lea
   PetscFunctionReturn(0);
 }
 
-// Those that leave whole, or the others of which no more is left than is beside the side.
+// Removes the leaving bodies: those that are removed whole, or the others once all their solid lies beside a boundary.
 PetscErrorCode BodiesAtSides::take_out_bodies(bool whole) {
   std::map<int, Leaving> leaves;
   BodyOwners owners;
   std::vector<Int3> references;
   const auto concerned = [&](const Phase &phase) { return !is_held(phase) && leave_whole(phase.material) == whole; };
-  // All ranks with cells of a body learn the last that any says of it.
+  // All ranks with cells of a body agree on the largest value of Leaving that any of them found.
   const auto agree = [&] {
     std::vector<double> here, owned(static_cast<std::size_t>(owners.owned().size()), 0);
     PetscFunctionBeginUser;
@@ -149,7 +149,7 @@ PetscErrorCode BodiesAtSides::sum_fractions(Field *sum) {
   PetscFunctionReturn(0);
 }
 
-// All see the same fractions: bodies of one stretch come in as far from each other as they are.
+// All bodies are compared with the same fractions, so that bodies of one stretch keep their distances when they enter.
 PetscErrorCode BodiesAtSides::find_coming(const std::vector<int> &labels, std::vector<Coming> *states) {
   Field fractions;
   PetscFunctionBeginUser;

@@ -166,7 +166,7 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   PetscFunctionReturn(0);
 }
 
-// What the time loop knows of the run, and how fast it was.
+// Adds the progress of the time loop and its speed.
 void Outputs::add_progress(const RunSummary &run, const Totals &totals, Json *json) const {
   const State &state = solver_->state();
   const double cells = domain_->domain_cell_count(), steps = double(state.step), updates = cells * steps;

@@ -170,7 +170,7 @@ int pairs_of(const Solver &solver) {
   return adhesion ? static_cast<int>(adhesion->pairs().size()) : 0;
 }
 
-// Some bodies in boxes for each rank, the same values whoever gets them.
+// Reads the bodies in boxes, a part of them on each rank.
 PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver *solver) {
   const Domain &domain = solver->domain();
   CheckpointRecords heads{heads_name, FreeBodies::head, {}};
