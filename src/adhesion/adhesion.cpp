@@ -33,12 +33,12 @@ PetscErrorCode Adhesion::carry(CarriedState *state) {
 PetscErrorCode Adhesion::place_on_bodies() {
   PetscFunctionBeginUser;
   fits_ = -1;
-  const std::vector<BodyInBox> list = boxed_.list();
+  const std::vector<BodyInBox> list = boxed_.bodies().list();
   for (std::size_t b = 0; b < list.size(); ++b) {
     double density = 0;
     for (const AdhesionPair &pair : spec_.pairs)
       if (pair.has(list[b].species)) density = std::max(density, pair.density);
-    std::vector<Receptor> &receptors = boxed_.receptors(b);
+    std::vector<Receptor> &receptors = boxed_.bodies().receptors(b);
     if (density > 0 && receptors.empty())
       place_receptors(list[b], density, static_cast<std::uint32_t>(spec_.seed), &receptors);
   }
@@ -64,7 +64,7 @@ Receptor *Adhesion::find_own(const ReceptorName &name) {
                                      [](const FreeBodies::Body &one, int number) { return one.number < number; });
   if (body == bodies().end() || body->number != name.body) return nullptr;
   if (name.index < 0 || name.index >= static_cast<int>(body->receptors.size())) return nullptr;
-  return &boxed_.receptors(body - bodies().begin())[name.index];
+  return &boxed_.bodies().receptors(body - bodies().begin())[name.index];
 }
 
 const Adhesion::NearReceptor *Adhesion::find_near(const ReceptorName &name) const {
@@ -203,7 +203,7 @@ PetscErrorCode Adhesion::query_grid(double dt) {
   PetscCall(send_to_ranks(domain.comm(), to, &requests));
   for (const Request &request : requests) {
     if (request.pair == Request::anchor)
-      boxed_.receptors(request.body)[request.receptor].anchor = request.place;
+      boxed_.bodies().receptors(request.body)[request.receptor].anchor = request.place;
     else if (request.found)
       feet_[name_of(request.body, request.receptor)].emplace_back(request.pair, request.place);
   }

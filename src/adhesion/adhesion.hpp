@@ -92,7 +92,7 @@ private:
   template <class Visit>
   void for_receptors(const Visit &visit) {
     for (std::size_t b = 0; b < bodies().size(); ++b) {
-      std::vector<Receptor> &receptors = boxed_.receptors(b);
+      std::vector<Receptor> &receptors = boxed_.bodies().receptors(b);
       for (std::size_t r = 0; r < receptors.size(); ++r) visit(b, r, &receptors[r]);
     }
   }

@@ -55,7 +55,7 @@ void Adhesion::release_lost() {
 
 void Adhesion::break_bonds(double dt) {
   for (const Bond &bond : bonds_) {
-    Receptor &receptor = boxed_.receptors(bond.body)[bond.receptor];
+    Receptor &receptor = boxed_.bodies().receptors(bond.body)[bond.receptor];
     const ReceptorName name = name_of(bond.body, bond.receptor);
     const ReceptorName partner{static_cast<int>(receptor.partner), static_cast<int>(receptor.other)};
     const ReceptorName first = partner.body > 0 && partner < name ? partner : name;

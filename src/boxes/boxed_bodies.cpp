@@ -39,7 +39,7 @@ PetscErrorCode BoxedBodies::refit() {
   PetscFunctionBeginUser;
   discard_copies();
   PetscCall(bodies_.follow());
-  PetscCall(put_fractions_on_grid(list(), &flow_.now.phases));
+  PetscCall(put_fractions_on_grid(bodies_.list(), &flow_.now.phases));
   PetscFunctionReturn(0);
 }
 
@@ -170,7 +170,7 @@ PetscErrorCode BoxedBodies::start() {
 PetscErrorCode BoxedBodies::resume() {
   PetscFunctionBeginUser;
   PetscCall(share());
-  PetscCall(put_fractions_on_grid(list(), &flow_.now.phases));
+  PetscCall(put_fractions_on_grid(bodies_.list(), &flow_.now.phases));
   PetscFunctionReturn(0);
 }
 
@@ -185,7 +185,7 @@ PetscErrorCode BoxedBodies::share() {
   discard_copies();
   for (const Phase &phase : flow_.now.phases)
     if (!phase.boxed) load += phase_work(phase.material, false) * double(phase.rows.cells());
-  for (const BodyInBox &body : list()) {
+  for (const BodyInBox &body : bodies_.list()) {
     const Layout &layout = body.box->layout();
     Int3 middle{};
     for (int d = 0; d < 3; ++d) middle[d] = domain.image(d, layout.begin[d] + layout.cells[d] / 2);
@@ -214,7 +214,7 @@ PetscErrorCode BoxedBodies::move(double dt, std::vector<Phase> *phases) {
   if (phases == &flow_.now.phases) {
     PetscCall(bodies_.advance({flow_.now.time, dt, flow_.now.step}, flow_.now.velocity, &unresolved));
     flow_.now.forgotten += unresolved;
-    PetscCall(put_fractions_on_grid(list(), phases));
+    PetscCall(put_fractions_on_grid(bodies_.list(), phases));
   } else {
     std::vector<BodyInBox> bodies;
     PetscCall(synchronise(dt, &bodies));
@@ -318,7 +318,7 @@ PetscErrorCode BoxedBodies::find_all_fractions(std::map<int, Phase> *phases) {
     phase.fraction = Field(flow_.domain, 1);
     targets[static_cast<int>(p)] = &phase;
   }
-  PetscCall(bodies_.put_fractions_on_grid(list(), targets));
+  PetscCall(bodies_.put_fractions_on_grid(bodies_.list(), targets));
   PetscFunctionReturn(0);
 }
 

@@ -30,17 +30,11 @@ public:
   /// Adds copies of bodies of this rank to this rank. `copies`: labels of a body and of its copy; `shifts`: by the
   /// label of the body, in cells. Call refit() afterwards.
   PetscErrorCode add_copies(const std::vector<std::pair<int, int>> &copies, const std::map<int, Int3> &shifts);
-  /// Removes bodies of this rank, by ascending index in list(). Call refit() afterwards.
-  void remove(const std::vector<std::size_t> &which) { bodies_.remove(which); }
-  /// Removes the bodies of all ranks; others are added afterwards.
-  void clear() { bodies_.clear(); }
   /// Updates the boxes after bodies have been added or removed on some ranks. Collective.
   PetscErrorCode refit();
+  /// The bodies of this rank. Call refit() after they have been added or removed.
+  FreeBodies &bodies() { return bodies_; }
   const FreeBodies &bodies() const { return bodies_; }
-  /// The receptors of a body, by its index in bodies().
-  std::vector<Receptor> &receptors(std::size_t body) { return bodies_.receptors(body); }
-  /// The bodies of this rank at their own time, without velocity.
-  std::vector<BodyInBox> list() const { return bodies_.list(); }
   /// Computes phi on the grid of every species in boxes. Collective.
   PetscErrorCode find_all_fractions(std::map<int, Phase> *phases);
 
@@ -54,8 +48,6 @@ public:
   PetscErrorCode add_power(const SynchronisedBodies &bodies, double *power) override;
   PetscErrorCode add_surface_energy(const SynchronisedBodies &bodies, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
-  PetscErrorCode place_markers() { return bodies_.place_markers(); }
-  void keep_surfaces(bool keep) { bodies_.keep_surfaces(keep); }
   void mark_forced_rows(std::vector<char> *rows) const override { bodies_.mark_rows(rows); }
   PetscErrorCode reset_unresolved(const std::vector<double> &trace) override;
 

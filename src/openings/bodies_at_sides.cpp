@@ -22,7 +22,7 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   // Phase, direction and side in one number, as ranks have to agree on one of several places in one reduction.
   const auto hold = [&](int phase, int d, bool high) { found[0] = std::max(found[0], phase * 6 + 2 * d + high); };
   PetscFunctionBeginUser;
-  const std::vector<BodyInBox> boxed = boxed_.list();
+  const std::vector<BodyInBox> boxed = boxed_.bodies().list();
   for (std::size_t b = 0; b < boxed.size(); ++b) {
     const BodyInBox &body = boxed[b];
     for (const auto [d, high] : flow_.domain.sides())
@@ -63,13 +63,13 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
 PetscErrorCode BodiesAtSides::take_out_boxed(const std::vector<std::size_t> &leaving) {
   std::vector<std::pair<int, Int3>> last;
   PetscFunctionBeginUser;
-  const std::vector<BodyInBox> all = boxed_.list();
+  const std::vector<BodyInBox> all = boxed_.bodies().list();
   for (const std::size_t b : leaving) {
     Int3 middle = all[b].phase->extent(*all[b].box).middle();
     for (int d = 0; d < 3; ++d) middle[d] += all[b].box->layout().begin[d];
     last.emplace_back(all[b].number, middle);
   }
-  boxed_.remove(leaving);
+  boxed_.bodies().remove(leaving);
   PetscCall(boxed_.refit());
   PetscCall(flow_.bodies.set_last_references(flow_.domain, last));
   PetscFunctionReturn(0);
@@ -161,7 +161,7 @@ PetscErrorCode BodiesAtSides::find_coming(const std::vector<int> &labels, std::v
   };
   std::vector<Candidate> candidates;
   states->assign(labels.size(), Coming::has_left);
-  for (const BodyInBox &body : boxed_.list()) {
+  for (const BodyInBox &body : boxed_.bodies().list()) {
     const auto found = std::find(labels.begin(), labels.end(), body.number);
     if (found == labels.end()) continue;
     const std::size_t n = found - labels.begin();

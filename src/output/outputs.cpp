@@ -229,7 +229,8 @@ PetscErrorCode Outputs::write_summary(const RunSummary &run) {
   if (bodies_file_ && run.exit_reason != "output_failed") PetscCall(bodies_file_->flush());
   Totals totals{double(solver_->bytes()), 0, double(state.markers.size())};
   for (const Phase &phase : state.phases) totals.evolving += phase.tensor.evolving.points();
-  for (const BodyInBox &body : solver_->boxed().list()) totals.evolving += body.phase->tensor.evolving.points();
+  for (const BodyInBox &body : solver_->boxed().bodies().list())
+    totals.evolving += body.phase->tensor.evolving.points();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &totals, 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
   std::uint64_t hash = 0;
   std::vector<Json> files, sides, verdicts, bodies;

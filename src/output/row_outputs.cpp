@@ -212,7 +212,7 @@ PetscErrorCode Outputs::resume_row() {
 }
 
 void Outputs::prepare_step(double dt) {
-  solver_->boxed().keep_surfaces(waits_ || series_due_.at(solver_->state().time + dt));
+  solver_->boxed().bodies().keep_surfaces(waits_ || series_due_.at(solver_->state().time + dt));
 }
 
 PetscErrorCode Outputs::record_middle(double dt) {

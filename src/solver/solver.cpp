@@ -145,7 +145,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   State &now = flow_->now;
   const Domain &domain = flow_->domain;
   PetscFunctionBeginUser;
-  PetscCall(measure_extremes(domain, now.velocity, now.phases, extremes, boxed_->list()));
+  PetscCall(measure_extremes(domain, now.velocity, now.phases, extremes, boxed_->bodies().list()));
   for (int d = 0; rigid() && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid()->speed[d]);
   now.speed_scale = std::max(extremes->max_speed(), wall_speed(flow_->spec.sides));
   for (const double speed : inflow_speed(flow_->spec.sides)) now.speed_scale = std::max(now.speed_scale, speed);
