@@ -33,16 +33,16 @@ PetscErrorCode Adhesion::carry(CarriedState *state) {
 PetscErrorCode Adhesion::place_on_bodies() {
   PetscFunctionBeginUser;
   fits_ = -1;
-  const std::vector<BodyInBox> list = boxed_.list();
+  const std::vector<BodyInBox> list = boxed_.bodies().list();
   for (std::size_t b = 0; b < list.size(); ++b) {
     double density = 0;
     for (const AdhesionPair &pair : spec_.pairs)
       if (pair.has(list[b].species)) density = std::max(density, pair.density);
-    std::vector<Receptor> &receptors = boxed_.receptors(b);
+    std::vector<Receptor> &receptors = boxed_.bodies().receptors(b);
     if (density > 0 && receptors.empty())
       place_receptors(list[b], density, static_cast<std::uint32_t>(spec_.seed), &receptors);
   }
-  PetscCall(renew());
+  PetscCall(rebuild_bonds());
   PetscFunctionReturn(0);
 }
 
@@ -55,7 +55,7 @@ PetscErrorCode Adhesion::start() {
 PetscErrorCode Adhesion::resume() {
   PetscFunctionBeginUser;
   fits_ = -1;
-  PetscCall(renew());
+  PetscCall(rebuild_bonds());
   PetscFunctionReturn(0);
 }
 
@@ -64,7 +64,7 @@ Receptor *Adhesion::find_own(const ReceptorName &name) {
                                      [](const FreeBodies::Body &one, int number) { return one.number < number; });
   if (body == bodies().end() || body->number != name.body) return nullptr;
   if (name.index < 0 || name.index >= static_cast<int>(body->receptors.size())) return nullptr;
-  return &boxed_.receptors(body - bodies().begin())[name.index];
+  return &boxed_.bodies().receptors(body - bodies().begin())[name.index];
 }
 
 const Adhesion::NearReceptor *Adhesion::find_near(const ReceptorName &name) const {
@@ -116,7 +116,7 @@ Extent Adhesion::hull_of(const FreeBodies::Body &body) const {
 }
 
 // Finds the surroundings of all bodies again if boxes have been refitted or surfaces may have moved by a cell.
-PetscErrorCode Adhesion::look_around() {
+PetscErrorCode Adhesion::update_surroundings() {
   PetscFunctionBeginUser;
   if (fits_ == boxed_.bodies().fits() && travel_ <= 1) PetscFunctionReturn(0);
   fits_ = boxed_.bodies().fits();
@@ -143,7 +143,7 @@ PetscErrorCode Adhesion::look_around() {
 }
 
 // A request to the rank that owns the cell of a position, and its reply.
-struct Adhesion::Question {
+struct Adhesion::Request {
   int rank, body, receptor;  ///< the sender, and indices there
   int pair;                  ///< a point on the surface of its second species is requested; `anchor`: its new position
   bool found;
@@ -152,12 +152,12 @@ struct Adhesion::Question {
 };
 
 // Moves an anchor by the midpoint rule; on walls the interpolated velocity is that of the wall.
-void Adhesion::answer(double dt, Question *question) const {
+void Adhesion::reply(double dt, Request *request) const {
   const Domain &domain = flow_.domain;
-  Real3 &place = question->place;
-  if (question->pair != Question::anchor) {
-    const Foot foot = find_foot(domain, flow_.now.phases[spec_.pairs[question->pair].second], place);
-    question->found = foot.found;
+  Real3 &place = request->place;
+  if (request->pair != Request::anchor) {
+    const Foot foot = find_foot(domain, flow_.now.phases[spec_.pairs[request->pair].second], place);
+    request->found = foot.found;
     place = foot.place;
     return;
   }
@@ -173,39 +173,39 @@ void Adhesion::answer(double dt, Question *question) const {
 }
 
 // Moves anchors and finds the points of surfaces on the grid that free receptors may bind to.
-PetscErrorCode Adhesion::ask_grid(double dt) {
+PetscErrorCode Adhesion::query_grid(double dt) {
   const Domain &domain = flow_.domain;
-  std::vector<Question> questions;
+  std::vector<Request> requests;
   std::vector<int> to;
   PetscFunctionBeginUser;
   feet_.clear();
-  const auto ask = [&](std::size_t b, std::size_t r, int pair, const Real3 &place) {
-    questions.push_back({domain.rank(), static_cast<int>(b), static_cast<int>(r), pair, false, place});
+  const auto request_at = [&](std::size_t b, std::size_t r, int pair, const Real3 &place) {
+    requests.push_back({domain.rank(), static_cast<int>(b), static_cast<int>(r), pair, false, place});
     to.push_back(GridPlace(domain, place).owner(domain));
   };
   for_receptors([&](std::size_t b, std::size_t r, Receptor *receptor) {
-    if (receptor->partner == Receptor::wall) ask(b, r, Question::anchor, receptor->anchor);
+    if (receptor->partner == Receptor::wall) request_at(b, r, Request::anchor, receptor->anchor);
     const auto around = around_.find(bodies()[b].number);
     if (receptor->is_bound() || around == around_.end() || !around->second.surface) return;
     for (std::size_t p = 0; p < spec_.pairs.size(); ++p)
       if (is_on_grid(spec_.pairs[p]) && spec_.pairs[p].first == bodies()[b].species)
-        ask(b, r, static_cast<int>(p), receptor->place);
+        request_at(b, r, static_cast<int>(p), receptor->place);
   });
   const bool any = std::any_of(spec_.pairs.begin(), spec_.pairs.end(),
                                [this](const AdhesionPair &pair) { return !is_of_bodies(pair); });
   if (!any) PetscFunctionReturn(0);
-  PetscCall(send_to_ranks(domain.comm(), to, &questions));
+  PetscCall(send_to_ranks(domain.comm(), to, &requests));
   to.clear();
-  for (Question &question : questions) {
-    answer(dt, &question);
-    to.push_back(question.rank);
+  for (Request &request : requests) {
+    reply(dt, &request);
+    to.push_back(request.rank);
   }
-  PetscCall(send_to_ranks(domain.comm(), to, &questions));
-  for (const Question &question : questions) {
-    if (question.pair == Question::anchor)
-      boxed_.receptors(question.body)[question.receptor].anchor = question.place;
-    else if (question.found)
-      feet_[name_of(question.body, question.receptor)].emplace_back(question.pair, question.place);
+  PetscCall(send_to_ranks(domain.comm(), to, &requests));
+  for (const Request &request : requests) {
+    if (request.pair == Request::anchor)
+      boxed_.bodies().receptors(request.body)[request.receptor].anchor = request.place;
+    else if (request.found)
+      feet_[name_of(request.body, request.receptor)].emplace_back(request.pair, request.place);
   }
   PetscFunctionReturn(0);
 }
@@ -223,7 +223,7 @@ bool Adhesion::is_near(const Real3 &place, const Extent &box, double reach) cons
 }
 
 // Sends receptors near another body, and those bound to it, to the rank of that body.
-PetscErrorCode Adhesion::tell_near() {
+PetscErrorCode Adhesion::send_near_receptors() {
   const double reach = reach_of_bodies();
   const int here = flow_.domain.rank();
   std::vector<NearReceptor> own;
@@ -300,10 +300,10 @@ PetscErrorCode Adhesion::send_forces() {
 }
 
 // Rebuilds the bonds and their forces after bodies may have left or their boxes have been refitted.
-PetscErrorCode Adhesion::renew() {
+PetscErrorCode Adhesion::rebuild_bonds() {
   PetscFunctionBeginUser;
-  PetscCall(look_around());
-  PetscCall(tell_near());
+  PetscCall(update_surroundings());
+  PetscCall(send_near_receptors());
   find_bonds();
   PetscCall(send_forces());
   PetscFunctionReturn(0);
@@ -315,9 +315,9 @@ PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
   EventScope scope(Event::adhesion);
   travel_ += flow_.now.crossing_rate * dt;
   broken_.clear();
-  PetscCall(look_around());
-  PetscCall(ask_grid(dt));
-  PetscCall(tell_near());
+  PetscCall(update_surroundings());
+  PetscCall(query_grid(dt));
+  PetscCall(send_near_receptors());
   release_lost();
   find_bonds();
   break_bonds(dt);
@@ -331,7 +331,7 @@ PetscErrorCode Adhesion::move(double dt, std::vector<Phase> *phases) {
 // Removes the forces of the bonds of bodies that have left.
 PetscErrorCode Adhesion::end_step() {
   PetscFunctionBeginUser;
-  if (fits_ != boxed_.bodies().fits()) PetscCall(renew());
+  if (fits_ != boxed_.bodies().fits()) PetscCall(rebuild_bonds());
   PetscFunctionReturn(0);
 }
 

@@ -37,7 +37,7 @@ public:
   PetscErrorCode add_rate(const MomentumRate &rate) override;
   PetscErrorCode end_step() override;
   void mark_forced_rows(std::vector<char> *rows) const override { forces_.mark_rows(rows); }
-  PetscErrorCode add_power(const SynchronisedBodies &look, double *power) override;
+  PetscErrorCode add_power(const SynchronisedBodies &bodies, double *power) override;
 
   const std::vector<AdhesionPair> &pairs() const { return spec_.pairs; }
   /// Places receptors on bodies that have none. Collective, like all functions below.
@@ -92,7 +92,7 @@ private:
   template <class Visit>
   void for_receptors(const Visit &visit) {
     for (std::size_t b = 0; b < bodies().size(); ++b) {
-      std::vector<Receptor> &receptors = boxed_.receptors(b);
+      std::vector<Receptor> &receptors = boxed_.bodies().receptors(b);
       for (std::size_t r = 0; r < receptors.size(); ++r) visit(b, r, &receptors[r]);
     }
   }
@@ -103,17 +103,17 @@ private:
   bool is_of_bodies(const AdhesionPair &pair) const { return !pair.to_wall() && !is_on_grid(pair); }
   double reach_of_bodies() const;
 
-  PetscErrorCode look_around();
+  PetscErrorCode update_surroundings();
   Extent hull_of(const FreeBodies::Body &body) const;
-  PetscErrorCode ask_grid(double dt);
-  struct Question;
-  void answer(double dt, Question *question) const;
+  PetscErrorCode query_grid(double dt);
+  struct Request;
+  void reply(double dt, Request *request) const;
   bool is_near(const Real3 &place, const Extent &box, double reach) const;
-  PetscErrorCode tell_near();
+  PetscErrorCode send_near_receptors();
   void release_lost();
   void find_bonds();
   PetscErrorCode send_forces();
-  PetscErrorCode renew();
+  PetscErrorCode rebuild_bonds();
 
   /// The purposes of random numbers; each has its own stream.
   enum class Chance : unsigned { rupture, bond_to_wall, bond_of_bodies };
@@ -125,7 +125,7 @@ private:
   Foot foot_on_wall(const AdhesionPair &pair, const Real3 &place) const;
   void form_bonds_to_walls(double dt);
   void find_proposals(double dt, std::vector<Proposal> *proposals, std::vector<int> *to);
-  void judge(const std::set<ReceptorName> &wanting, std::vector<Proposal> *proposals);
+  void accept_proposals(const std::set<ReceptorName> &wanting, std::vector<Proposal> *proposals);
   PetscErrorCode form_bonds_of_bodies(double dt);
   PetscErrorCode sum_events();
   void find_body(End *end) const;

@@ -55,7 +55,7 @@ void Adhesion::release_lost() {
 
 void Adhesion::break_bonds(double dt) {
   for (const Bond &bond : bonds_) {
-    Receptor &receptor = boxed_.receptors(bond.body)[bond.receptor];
+    Receptor &receptor = boxed_.bodies().receptors(bond.body)[bond.receptor];
     const ReceptorName name = name_of(bond.body, bond.receptor);
     const ReceptorName partner{static_cast<int>(receptor.partner), static_cast<int>(receptor.other)};
     const ReceptorName first = partner.body > 0 && partner < name ? partner : name;
@@ -143,7 +143,7 @@ void Adhesion::find_proposals(double dt, std::vector<Proposal> *proposals, std::
 
 // Decides on the proposals to receptors of this rank: each accepts the nearest, unless it has become bound or has
 // itself proposed (`wanting`).
-void Adhesion::judge(const std::set<ReceptorName> &wanting, std::vector<Proposal> *proposals) {
+void Adhesion::accept_proposals(const std::set<ReceptorName> &wanting, std::vector<Proposal> *proposals) {
   std::sort(proposals->begin(), proposals->end(), [](const Proposal &one, const Proposal &other) {
     return std::tie(one.to, one.distance, one.from) < std::tie(other.to, other.distance, other.from);
   });
@@ -166,7 +166,7 @@ PetscErrorCode Adhesion::form_bonds_of_bodies(double dt) {
   find_proposals(dt, &proposals, &to);
   for (const Proposal &proposal : proposals) wanting.insert(proposal.from);
   PetscCall(send_to_ranks(comm, to, &proposals));
-  judge(wanting, &proposals);
+  accept_proposals(wanting, &proposals);
   to.clear();
   for (const Proposal &proposal : proposals) to.push_back(proposal.rank);
   PetscCall(send_to_ranks(comm, to, &proposals));

@@ -322,23 +322,23 @@ PetscErrorCode BodyTracker::give_to_owners(const Domain &domain, std::vector<Kno
   std::sort(known.begin(), known.end(), [](const Known &a, const Known &b) { return a.body < b.body; });
   references_.clear();
   for (const Known &one : known) references_.push_back(one.reference);
-  if (settled_) first_volumes_.clear();
+  if (sent_to_owners_) first_volumes_.clear();
   for (const Known &one : known)
-    if (settled_) first_volumes_.push_back(one.first_volume);
+    if (sent_to_owners_) first_volumes_.push_back(one.first_volume);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodyTracker::settle(const Domain &domain) {
+PetscErrorCode BodyTracker::send_placed_to_owners(const Domain &domain) {
   PetscFunctionBeginUser;
-  if (settled_) PetscFunctionReturn(0);
+  if (sent_to_owners_) PetscFunctionReturn(0);
   PetscCall(give_to_owners(domain, std::move(placed_)));
-  settled_ = true;
+  sent_to_owners_ = true;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode BodyTracker::add_like(const Domain &domain, int label, const Int3 &shift) {
   PetscFunctionBeginUser;
-  PetscCall(settle(domain));
+  PetscCall(send_placed_to_owners(domain));
   const BodyRange own = BodyRange::of(bodies(), domain.rank(), domain.ranks());
   std::vector<Known> known;
   first_volumes_.resize(references_.size());
@@ -381,7 +381,7 @@ PetscErrorCode BodyTracker::connect(const Domain &domain, const std::vector<Phas
   std::sort(here.begin(), here.end());
   here.erase(std::unique(here.begin(), here.end()), here.end());
   PetscCall(owners->connect(domain.comm(), bodies(), std::move(here)));
-  PetscCall(settle(domain));
+  PetscCall(send_placed_to_owners(domain));
   std::vector<double> owned, brought(3 * owners->here().size());
   for (const Int3 &cell : within_box(domain, references_)) owned.insert(owned.end(), cell.begin(), cell.end());
   PetscCall(owners->bring(3, owned, &brought));
@@ -394,7 +394,7 @@ PetscErrorCode BodyTracker::set_last_references(const Domain &domain, const std:
   std::vector<Known> known;
   std::vector<int> owners;
   PetscFunctionBeginUser;
-  PetscCall(settle(domain));
+  PetscCall(send_placed_to_owners(domain));
   for (const auto &[label, cell] : last) {
     known.push_back({label - 1, cell, 0});
     owners.push_back(BodyRange::owner(label - 1, bodies(), domain.ranks()));
@@ -407,7 +407,7 @@ PetscErrorCode BodyTracker::set_last_references(const Domain &domain, const std:
 
 PetscErrorCode BodyTracker::owned_references(const Domain &domain, std::vector<Int3> *references) {
   PetscFunctionBeginUser;
-  PetscCall(settle(domain));
+  PetscCall(send_placed_to_owners(domain));
   *references = references_;
   PetscFunctionReturn(0);
 }
@@ -417,7 +417,7 @@ void BodyTracker::wrap(const Box &box) { references_ = within_box(box, std::move
 PetscErrorCode BodyTracker::known(const Domain &domain, std::vector<Int3> *references,
                                   std::vector<double> *first_volumes) {
   PetscFunctionBeginUser;
-  PetscCall(settle(domain));
+  PetscCall(send_placed_to_owners(domain));
   std::vector<double> volumes = first_volumes_;
   volumes.resize(references_.size());
   PetscCall(gather_bodies(domain.comm(), bodies(), bodies(), references_, references));
@@ -429,7 +429,7 @@ void BodyTracker::set_known(std::vector<Int3> owned_references, std::vector<doub
   references_ = std::move(owned_references);
   first_volumes_ = std::move(owned_first_volumes);
   placed_.clear();
-  settled_ = true;
+  sent_to_owners_ = true;
 }
 
 }  // namespace eulastic

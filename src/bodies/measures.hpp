@@ -95,14 +95,14 @@ private:
     double first_volume;
   };
   PetscErrorCode give_to_owners(const Domain &domain, std::vector<Known> known);
-  PetscErrorCode settle(const Domain &domain);
+  PetscErrorCode send_placed_to_owners(const Domain &domain);
   // The label of a placed body, or of the placed body of which this body is a copy.
   int placed(int label) const { return label > first_.back() ? like_[label - first_.back() - 1] : label; }
 
   std::vector<Known> placed_;     ///< bodies that have not been sent to their owners yet
   std::vector<Int3> references_;  ///< reference cells of the bodies that this rank owns
   std::vector<double> first_volumes_;
-  bool settled_ = false;
+  bool sent_to_owners_ = false;
   std::vector<int> first_{0}, like_;  ///< first_: first body of every phase, and the total
 };
 

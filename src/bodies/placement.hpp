@@ -34,7 +34,7 @@ struct Places {
   void share_among(int rank, int ranks);
 };
 
-/// Which bodies a rank keeps: its BodyRange of `ranks`; by default all.
+/// The bodies that a rank stores: its BodyRange of `ranks`; by default all.
 struct KeptBodies {
   int rank = 0, ranks = 1;
 };

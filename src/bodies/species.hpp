@@ -26,7 +26,8 @@ constexpr bool is_closed(Shape shape) {
   return shape == Shape::sphere || shape == Shape::biconcave || shape == Shape::ellipsoid;
 }
 enum class Placement { one, list, lattice, random };
-/// How bodies of one species meet: each in a box of its own, so that they never merge, or all in one phase of the grid.
+/// Storage of the bodies of a species: each in a box of its own, so that they never merge, or all in one phase of the
+/// grid.
 enum class Contact { separate, merge };
 
 /// One body from a file: voxels or a closed surface.

@@ -12,7 +12,7 @@
 namespace eulastic {
 namespace {
 
-// Adding 0 would make +0 of -0: no value is touched where a box has nothing to add, whoever owns it.
+// Adding 0 would turn -0 into +0. Values to which a box adds nothing are therefore not changed, on any rank.
 void add_values(const double *values, int count, double factor, double *to) {
   for (int m = 0; m < count; ++m) to[m] = values[m] == 0 ? to[m] : to[m] + factor * values[m];
 }

@@ -18,7 +18,7 @@ namespace eulastic {
 class SegmentValues {
 public:
   void take(const Field &field, const ActiveSegments &segments);
-  /// Those of a component in segment `which` of ActiveSegments::all().
+  /// The values of a component in segment `which` of ActiveSegments::all().
   const double *of(int component, std::ptrdiff_t which) const {
     return values_.data() + component * size_ + starts_[which];
   }

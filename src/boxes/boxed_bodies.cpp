@@ -37,9 +37,9 @@ PetscErrorCode BoxedBodies::add_copies(const std::vector<std::pair<int, int>> &c
 
 PetscErrorCode BoxedBodies::refit() {
   PetscFunctionBeginUser;
-  forget_looks();
+  discard_copies();
   PetscCall(bodies_.follow());
-  PetscCall(show_fractions(list(), &flow_.now.phases));
+  PetscCall(put_fractions_on_grid(bodies_.list(), &flow_.now.phases));
   PetscFunctionReturn(0);
 }
 
@@ -170,7 +170,7 @@ PetscErrorCode BoxedBodies::start() {
 PetscErrorCode BoxedBodies::resume() {
   PetscFunctionBeginUser;
   PetscCall(share());
-  PetscCall(show_fractions(list(), &flow_.now.phases));
+  PetscCall(put_fractions_on_grid(bodies_.list(), &flow_.now.phases));
   PetscFunctionReturn(0);
 }
 
@@ -182,10 +182,10 @@ PetscErrorCode BoxedBodies::share() {
   double load = flow_work * double(domain.cell_count());
   PetscFunctionBeginUser;
   if (!exist()) PetscFunctionReturn(0);
-  forget_looks();
+  discard_copies();
   for (const Phase &phase : flow_.now.phases)
     if (!phase.boxed) load += phase_work(phase.material, false) * double(phase.rows.cells());
-  for (const BodyInBox &body : list()) {
+  for (const BodyInBox &body : bodies_.list()) {
     const Layout &layout = body.box->layout();
     Int3 middle{};
     for (int d = 0; d < 3; ++d) middle[d] = domain.image(d, layout.begin[d] + layout.cells[d] / 2);
@@ -201,7 +201,7 @@ PetscErrorCode BoxedBodies::share() {
 PetscErrorCode BoxedBodies::begin_step() {
   constexpr int shared_every = 100;  // steps: bodies move by some cells meanwhile
   PetscFunctionBeginUser;
-  forget_looks();
+  discard_copies();
   if (flow_.now.step > 0 && flow_.now.step % shared_every == 0) PetscCall(share());
   PetscFunctionReturn(0);
 }
@@ -214,11 +214,11 @@ PetscErrorCode BoxedBodies::move(double dt, std::vector<Phase> *phases) {
   if (phases == &flow_.now.phases) {
     PetscCall(bodies_.advance({flow_.now.time, dt, flow_.now.step}, flow_.now.velocity, &unresolved));
     flow_.now.forgotten += unresolved;
-    PetscCall(show_fractions(list(), phases));
+    PetscCall(put_fractions_on_grid(bodies_.list(), phases));
   } else {
-    std::vector<BodyInBox> seen;
-    PetscCall(look(dt, &seen));
-    PetscCall(show_fractions(seen, phases));
+    std::vector<BodyInBox> bodies;
+    PetscCall(synchronise(dt, &bodies));
+    PetscCall(put_fractions_on_grid(bodies, phases));
   }
   PetscFunctionReturn(0);
 }
@@ -232,25 +232,25 @@ PetscErrorCode BoxedBodies::add_rate(const MomentumRate &rate) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::add_power(const SynchronisedBodies &look, double *power) {
+PetscErrorCode BoxedBodies::add_power(const SynchronisedBodies &bodies, double *power) {
   double own = 0;
   PetscFunctionBeginUser;
-  PetscCall(bodies_.stretch_power(look.boxed, flow_.now.phases, &own));
+  PetscCall(bodies_.stretch_power(bodies.boxed, flow_.now.phases, &own));
   *power += own;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::add_surface_energy(const SynchronisedBodies &look, SurfaceEnergy *measured,
+PetscErrorCode BoxedBodies::add_surface_energy(const SynchronisedBodies &bodies, SurfaceEnergy *measured,
                                                std::vector<SurfaceSample> *) {
   PetscFunctionBeginUser;
   const std::vector<Phase> &phases = flow_.now.phases;
   if (std::any_of(phases.begin(), phases.end(),
                   [](const Phase &phase) { return phase.boxed && phase.material.has_surface(); }))
-    PetscCall(bodies_.measure_surfaces(look.boxed, phases, measured, &samples_));
+    PetscCall(bodies_.measure_surfaces(bodies.boxed, phases, measured, &samples_));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::give_surface_measures(const std::vector<BodyInBox> &seen, int first,
+PetscErrorCode BoxedBodies::give_surface_measures(const std::vector<BodyInBox> &bodies, int first,
                                                   std::vector<SurfaceMeasure> *owned) const {
   struct Found {
     int number;
@@ -259,10 +259,10 @@ PetscErrorCode BoxedBodies::give_surface_measures(const std::vector<BodyInBox> &
   std::vector<Found> found;
   std::vector<int> ranks;
   PetscFunctionBeginUser;
-  for (std::size_t b = 0; b < seen.size(); ++b) {
-    if (!seen[b].phase->material.is_membrane()) continue;
-    found.push_back({seen[b].number, measure_surface_in_box(seen[b], samples_[b])});
-    ranks.push_back(BodyRange::owner(seen[b].number - 1, flow_.bodies.bodies(), flow_.domain.ranks()));
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].phase->material.is_membrane()) continue;
+    found.push_back({bodies[b].number, measure_surface_in_box(bodies[b], samples_[b])});
+    ranks.push_back(BodyRange::owner(bodies[b].number - 1, flow_.bodies.bodies(), flow_.domain.ranks()));
   }
   PetscCall(send_to_ranks(flow_.domain.comm(), ranks, &found));
   for (const Found &one : found) (*owned)[one.number - 1 - first] = one.measure;
@@ -272,88 +272,88 @@ PetscErrorCode BoxedBodies::give_surface_measures(const std::vector<BodyInBox> &
 PetscErrorCode BoxedBodies::reset_unresolved(const std::vector<double> &trace) {
   long count = 0;
   PetscFunctionBeginUser;
-  if (exist()) PetscCall(bodies_.reset_unresolved(trace, &count));
+  PetscCall(bodies_.reset_unresolved(trace, &count));
   flow_.now.forgotten += count;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::look(double behind, std::vector<BodyInBox> *seen) {
+PetscErrorCode BoxedBodies::synchronise(double behind, std::vector<BodyInBox> *bodies) {
   PetscFunctionBeginUser;
-  if (exist() && !is_seen_) {
-    PetscCall(bodies_.look({flow_.now.time, behind, flow_.now.step}, flow_.now.velocity, &seen_));
-    is_seen_ = true;
+  if (exist() && !are_synchronised_) {
+    PetscCall(bodies_.synchronise({flow_.now.time, behind, flow_.now.step}, flow_.now.velocity, &synchronised_));
+    are_synchronised_ = true;
   }
-  *seen = seen_;
+  *bodies = synchronised_;
   PetscFunctionReturn(0);
 }
 
-void BoxedBodies::forget_looks() {
-  is_seen_ = false;
-  seen_.clear();
-  shown_.clear();
+void BoxedBodies::discard_copies() {
+  are_synchronised_ = false;
+  synchronised_.clear();
+  on_grid_.clear();
 }
 
 // phi on the grid of species whose viscosity or force the flow has to know.
-PetscErrorCode BoxedBodies::show_fractions(const std::vector<BodyInBox> &seen, std::vector<Phase> *phases) {
-  std::map<int, Phase *> shown;
+PetscErrorCode BoxedBodies::put_fractions_on_grid(const std::vector<BodyInBox> &bodies, std::vector<Phase> *phases) {
+  std::map<int, Phase *> targets;
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < phases->size(); ++p) {
     const Material &material = (*phases)[p].material;
     if ((*phases)[p].boxed &&
         (viscosity_of(material, flow_.fluid) != flow_.fluid.viscosity || material.body_force.acts()))
-      shown[static_cast<int>(p)] = &(*phases)[p];
+      targets[static_cast<int>(p)] = &(*phases)[p];
   }
-  if (shown.empty()) PetscFunctionReturn(0);
-  PetscCall(bodies_.show_fractions(seen, shown));
-  for (const auto &[p, phase] : shown) PetscCall(flow_.find_rows(phase));
+  if (targets.empty()) PetscFunctionReturn(0);
+  PetscCall(bodies_.put_fractions_on_grid(bodies, targets));
+  for (const auto &[p, phase] : targets) PetscCall(flow_.find_rows(phase));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::show_all_fractions(std::map<int, Phase> *phases) {
-  std::map<int, Phase *> shown;
+PetscErrorCode BoxedBodies::find_all_fractions(std::map<int, Phase> *phases) {
+  std::map<int, Phase *> targets;
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
     if (!flow_.now.phases[p].boxed) continue;
     Phase &phase = (*phases)[static_cast<int>(p)];
     phase.fraction = Field(flow_.domain, 1);
-    shown[static_cast<int>(p)] = &phase;
+    targets[static_cast<int>(p)] = &phase;
   }
-  PetscCall(bodies_.show_fractions(list(), shown));
+  PetscCall(bodies_.put_fractions_on_grid(bodies_.list(), targets));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxedBodies::show_on_grid(const std::vector<BodyInBox> &seen, std::vector<Phase> *phases,
-                                         const std::function<PetscErrorCode()> &look) {
+PetscErrorCode BoxedBodies::with_bodies_on_grid(const std::vector<BodyInBox> &bodies, std::vector<Phase> *phases,
+                                                const std::function<PetscErrorCode()> &observe) {
   PetscFunctionBeginUser;
-  if (exist() && shown_.empty()) PetscCall(show(seen));
+  if (exist() && on_grid_.empty()) PetscCall(put_on_grid(bodies));
   const auto swap = [&] {
-    for (auto &[species, phase] : shown_) std::swap((*phases)[species], phase);
+    for (auto &[species, phase] : on_grid_) std::swap((*phases)[species], phase);
   };
   swap();
   struct Restore {
     const decltype(swap) &undo;
     ~Restore() { undo(); }
   } const restore{swap};
-  PetscCall(look());
+  PetscCall(observe());
   PetscFunctionReturn(0);
 }
 
 // The phases of species whose bodies lie in boxes, as they would be on the grid.
-PetscErrorCode BoxedBodies::show(const std::vector<BodyInBox> &seen) {
-  std::map<int, Phase *> shown;
+PetscErrorCode BoxedBodies::put_on_grid(const std::vector<BodyInBox> &bodies) {
+  std::map<int, Phase *> targets;
   PetscFunctionBeginUser;
   for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
     const Phase &of_species = flow_.now.phases[p];
     if (!of_species.boxed) continue;
-    Phase &phase = shown_[static_cast<int>(p)];
+    Phase &phase = on_grid_[static_cast<int>(p)];
     phase.species = of_species.species;
     phase.material = of_species.material;
     phase.tensor.rule = of_species.tensor.rule;
     phase.empty(flow_.domain, true);
-    shown[static_cast<int>(p)] = &phase;
+    targets[static_cast<int>(p)] = &phase;
   }
-  PetscCall(bodies_.show(seen, shown));
-  for (auto &[species, phase] : shown_) {
+  PetscCall(bodies_.put_on_grid(bodies, targets));
+  for (auto &[species, phase] : on_grid_) {
     PetscCall(flow_.find_rows(&phase));
     PetscCall(flow_.exchange.update_ghosts(phase.label, 1, &phase.rows));
     PetscCall(find_solid(flow_.domain, phase));

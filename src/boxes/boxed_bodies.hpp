@@ -25,23 +25,18 @@ public:
   PetscErrorCode add(int number, int species, const Box &box, Phase &&phase);
   /// Takes the labelled bodies of a species, whose phase is `boxed`, off the grid. Collective, before start().
   PetscErrorCode take_from_grid(int species);
-  /// Adds a body that FreeBodies::packed() has made to this rank.
+  /// Adds a body in the form of FreeBodies::packed() to this rank.
   PetscErrorCode add_packed(const std::vector<double> &packed);
-  /// Adds copies of bodies of this rank to it, as far away as given: label, that of the copy. follow() comes next.
+  /// Adds copies of bodies of this rank to this rank. `copies`: labels of a body and of its copy; `shifts`: by the
+  /// label of the body, in cells. Call refit() afterwards.
   PetscErrorCode add_copies(const std::vector<std::pair<int, int>> &copies, const std::map<int, Int3> &shifts);
-  /// Removes bodies of this rank, by their positions in list(), ascending; follow() must come next.
-  void remove(const std::vector<std::size_t> &which) { bodies_.remove(which); }
-  /// Removes the bodies of all ranks; others are added afterwards.
-  void clear() { bodies_.clear(); }
   /// Updates the boxes after bodies have been added or removed on some ranks. Collective.
   PetscErrorCode refit();
+  /// The bodies of this rank. Call refit() after they have been added or removed.
+  FreeBodies &bodies() { return bodies_; }
   const FreeBodies &bodies() const { return bodies_; }
-  /// Of the body at a place in bodies().
-  std::vector<Receptor> &receptors(std::size_t body) { return bodies_.receptors(body); }
-  /// The bodies of this rank at their own time, without velocity.
-  std::vector<BodyInBox> list() const { return bodies_.list(); }
-  /// Solid fraction of all bodies of every species in boxes, on the grid. Collective.
-  PetscErrorCode show_all_fractions(std::map<int, Phase> *phases);
+  /// Computes phi on the grid of every species in boxes. Collective.
+  PetscErrorCode find_all_fractions(std::map<int, Phase> *phases);
 
   std::size_t bytes() const override { return bodies_.bytes(); }
   PetscErrorCode start() override;
@@ -50,40 +45,38 @@ public:
   PetscErrorCode begin_slope(double dt, Field &slope) override;
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
   PetscErrorCode add_rate(const MomentumRate &rate) override;
-  PetscErrorCode add_power(const SynchronisedBodies &look, double *power) override;
-  PetscErrorCode add_surface_energy(const SynchronisedBodies &look, SurfaceEnergy *measured,
+  PetscErrorCode add_power(const SynchronisedBodies &bodies, double *power) override;
+  PetscErrorCode add_surface_energy(const SynchronisedBodies &bodies, SurfaceEnergy *measured,
                                     std::vector<SurfaceSample> *samples) override;
-  PetscErrorCode place_markers() { return bodies_.place_markers(); }
-  void keep_surfaces(bool keep) { bodies_.keep_surfaces(keep); }
   void mark_forced_rows(std::vector<char> *rows) const override { bodies_.mark_rows(rows); }
-  /// Resets B where the grid does not resolve it. `trace`: the largest tr B of every species. Collective.
-  PetscErrorCode reset_unresolved(const std::vector<double> &trace);
+  PetscErrorCode reset_unresolved(const std::vector<double> &trace) override;
 
   /// Bodies of this rank with the velocity, at its time: copies that have been moved over `behind`, or the bodies
-  /// themselves if that is 0. Valid until forget_looks(). Collective.
-  PetscErrorCode look(double behind, std::vector<BodyInBox> *seen);
-  /// Calls look() while the phases of species in boxes have what look() has seen on the grid: phi is the sum, B and the
-  /// label are of the body that fills most. Collective.
-  PetscErrorCode show_on_grid(const std::vector<BodyInBox> &seen, std::vector<Phase> *phases,
-                              const std::function<PetscErrorCode()> &look);
-  void forget_looks();
-  /// Of the membranes that add_surface_energy() has seen, to the ranks that own the bodies: `first` is the first of
-  /// those. Collective.
-  PetscErrorCode give_surface_measures(const std::vector<BodyInBox> &seen, int first,
+  /// themselves if that is 0. Valid until discard_copies(). Collective.
+  PetscErrorCode synchronise(double behind, std::vector<BodyInBox> *bodies);
+  /// Calls observe() while the phases of species in boxes contain `bodies` (of synchronise()) on the grid: phi is the
+  /// sum; B and the label are those of the body with the largest phi. Collective.
+  PetscErrorCode with_bodies_on_grid(const std::vector<BodyInBox> &bodies, std::vector<Phase> *phases,
+                                     const std::function<PetscErrorCode()> &observe);
+  /// Discards the results of synchronise() and with_bodies_on_grid().
+  void discard_copies();
+  /// Sends measures of the membranes in `bodies`, after add_surface_energy(), to the ranks that own the bodies.
+  /// `owned`: those of the bodies from index `first` on. Collective.
+  PetscErrorCode give_surface_measures(const std::vector<BodyInBox> &bodies, int first,
                                        std::vector<SurfaceMeasure> *owned) const;
 
 private:
   PetscErrorCode start_surfaces();
   PetscErrorCode share();
-  PetscErrorCode show_fractions(const std::vector<BodyInBox> &seen, std::vector<Phase> *phases);
-  PetscErrorCode show(const std::vector<BodyInBox> &seen);
+  PetscErrorCode put_fractions_on_grid(const std::vector<BodyInBox> &bodies, std::vector<Phase> *phases);
+  PetscErrorCode put_on_grid(const std::vector<BodyInBox> &bodies);
 
   Flow &flow_;
   FreeBodies bodies_;
-  std::vector<BodyInBox> seen_;  ///< by look()
-  bool is_seen_ = false;
-  std::map<int, Phase> shown_;                       ///< for show_on_grid(), by species; empty: not made yet
-  std::vector<std::vector<SurfaceSample>> samples_;  ///< of the membranes in seen_
+  std::vector<BodyInBox> synchronised_;  ///< result of synchronise()
+  bool are_synchronised_ = false;
+  std::map<int, Phase> on_grid_;                     ///< for with_bodies_on_grid(), by species; empty: not made yet
+  std::vector<std::vector<SurfaceSample>> samples_;  ///< of the membranes in synchronised_
 };
 
 }  // namespace eulastic

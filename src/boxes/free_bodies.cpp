@@ -212,7 +212,7 @@ PetscErrorCode FreeBodies::give(const std::vector<int> &ranks, const std::vector
     }
   }
   bodies_ = std::move(kept);
-  seen_.clear();
+  copies_.clear();
   fitted_ = fitted_ && parts.empty();
   PetscCall(send_to_ranks(domain_->comm(), to, &parts));
   std::sort(parts.begin(), parts.end(), [](const Part &one, const Part &other) {
@@ -231,13 +231,13 @@ PetscErrorCode FreeBodies::give(const std::vector<int> &ranks, const std::vector
 void FreeBodies::remove(const std::vector<std::size_t> &which) {
   for (auto b = which.rbegin(); b != which.rend(); ++b)
     bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(*b));
-  seen_.clear();
+  copies_.clear();
   fitted_ = fitted_ && which.empty();
 }
 
 void FreeBodies::clear() {
   bodies_.clear();
-  seen_.clear();
+  copies_.clear();
   fitted_ = false;
 }
 
@@ -306,7 +306,7 @@ PetscErrorCode FreeBodies::fit(Body *body, int layers) const {
 // All boxes at once, so that ranks seldom have to tell each other.
 PetscErrorCode FreeBodies::fit_boxes(bool *changed, long *unresolved) {
   PetscFunctionBeginUser;
-  seen_.clear();
+  copies_.clear();
   long sums[2] = {!fitted_, *unresolved};
   for (const Body &body : bodies_) sums[0] += is_near_an_end(body);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_LONG, MPI_SUM, domain_->comm()));

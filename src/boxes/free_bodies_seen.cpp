@@ -1,4 +1,4 @@
-// FreeBodies: what others see of the bodies.
+// FreeBodies: copies of the bodies at the time of the velocity, their measures, and their fields on the grid.
 #include "boxes/free_bodies.hpp"
 
 #include "field/boundaries.hpp"
@@ -26,17 +26,17 @@ double FreeBodies::values(const Material &material, int dimension, const Real3 &
 
 // What has a surface is measured in the box of the body. Of other bodies a copy is moved in scratch memory, and its
 // cells are kept.
-PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field &velocity, BodyInBox *seen) {
+PetscErrorCode FreeBodies::synchronise_body(std::size_t b, const Step &step, const Field &velocity, BodyInBox *result) {
   PetscFunctionBeginUser;
   const Body &body = bodies_[b];
   const Material &material = body.phase.material;
   const int dimension = body.box.dimension(), tensors = body.phase.tensor.field.count();
   const bool has_surface = material.has_surface();
-  Seen &own = seen_[b];
+  SynchronisedCopy &own = copies_[b];
   if (step.dt == 0) {
     own.velocity = Field(body.box, dimension);
     bring_velocity(b, step, velocity, &own.velocity);
-    seen->velocity = &own.velocity;
+    result->velocity = &own.velocity;
     PetscFunctionReturn(0);
   }
   const int working = material.is_membrane() ? MembraneMechanics::work_fields : stage_fields(body.phase);
@@ -70,29 +70,29 @@ PetscErrorCode FreeBodies::look_at(std::size_t b, const Step &step, const Field 
     own.velocity = Field(own.box, dimension);
     copy_shared(body.box, flow, ghosts, &own.velocity);
   }
-  seen->box = &own.box;
-  seen->phase = &own.moved;
-  seen->velocity = &own.velocity;
+  result->box = &own.box;
+  result->phase = &own.moved;
+  result->velocity = &own.velocity;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodies::look(const Step &step, const Field &velocity, std::vector<BodyInBox> *seen) {
+PetscErrorCode FreeBodies::synchronise(const Step &step, const Field &velocity, std::vector<BodyInBox> *bodies) {
   PetscFunctionBeginUser;
   PetscCall(exchange_.fetch(velocity));
-  *seen = list();
-  seen_.clear();
-  seen_.resize(bodies_.size());
-  PetscCall(for_bodies([&](std::size_t b) { return look_at(b, step, velocity, &(*seen)[b]); }));
+  *bodies = list();
+  copies_.clear();
+  copies_.resize(bodies_.size());
+  PetscCall(for_bodies([&](std::size_t b) { return synchronise_body(b, step, velocity, &(*bodies)[b]); }));
   PetscFunctionReturn(0);
 }
 
 // Uses the force and the samples that were found with it. They are found again for a copy that has moved, and where the
 // force contains that of a stretch force.
-PetscErrorCode FreeBodies::measure_membrane(const BodyInBox &seen, const Body &body, ExactSums *sum,
+PetscErrorCode FreeBodies::measure_membrane(const BodyInBox &moved, const Body &body, ExactSums *sum,
                                             std::vector<SurfaceSample> *samples) {
   PetscFunctionBeginUser;
   const Box &box = body.box;
-  const Phase &phase = *seen.phase;
+  const Phase &phase = *moved.phase;
   const int n = box.cells()[0], dimension = box.dimension();
   const bool kept = &phase == &body.phase && !body.surface.empty() && !is_stretched(phase.material);
   SegmentValues found;
@@ -112,7 +112,7 @@ PetscErrorCode FreeBodies::measure_membrane(const BodyInBox &seen, const Body &b
   std::vector<double> power(n);
   for (const Segment &row : box.rows())
     for (int a = 0; a < dimension && !forced.idle(row.j, row.k); ++a) {
-      const double *v = (*seen.velocity)[a].row(row.j, row.k);
+      const double *v = (*moved.velocity)[a].row(row.j, row.k);
       std::fill(power.begin(), power.end(), 0);
       for (const Segment &s : forced.row(row.j, row.k)) {
         const double *f = force.of(a, &s - forced.all().data());
@@ -122,21 +122,21 @@ PetscErrorCode FreeBodies::measure_membrane(const BodyInBox &seen, const Body &b
     }
   body.film.add_energy(phase, MembraneMechanics::stored, sum);
   MembraneMechanics::add_stored_energy(*samples, box.cell_volume(), sum);
-  for (SurfaceSample &sample : *samples) sample.label = seen.number;
-  MembraneMechanics::set_velocities(*seen.velocity, samples);
+  for (SurfaceSample &sample : *samples) sample.label = moved.number;
+  MembraneMechanics::set_velocities(*moved.velocity, samples);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodies::measure_surfaces(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
+PetscErrorCode FreeBodies::measure_surfaces(const std::vector<BodyInBox> &bodies, const std::vector<Phase> &species,
                                             SurfaceEnergy *measured, std::vector<std::vector<SurfaceSample>> *samples) {
   // Of all membranes, then of each species with surface tension.
   constexpr int of_membranes = MembraneMechanics::sums, of_species = CapillaryForce::sums;
   const int count = of_membranes + of_species * static_cast<int>(species.size());
   std::vector<ExactSums> sum(threads(), ExactSums(count));
   PetscFunctionBeginUser;
-  samples->assign(seen.size(), {});
-  for (std::size_t b = 0; b < seen.size(); ++b) {
-    const BodyInBox &body = seen[b];
+  samples->assign(bodies.size(), {});
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const BodyInBox &body = bodies[b];
     if (body.phase->material.is_membrane()) PetscCall(measure_membrane(body, bodies_[b], &sum.front(), &(*samples)[b]));
     if (body.phase->material.surface_tension > 0) {
       Field work = scratch(*body.box, CapillaryForce::work_fields);
@@ -158,14 +158,14 @@ PetscErrorCode FreeBodies::measure_surfaces(const std::vector<BodyInBox> &seen, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodies::stretch_power(const std::vector<BodyInBox> &seen, const std::vector<Phase> &species,
+PetscErrorCode FreeBodies::stretch_power(const std::vector<BodyInBox> &bodies, const std::vector<Phase> &species,
                                          double *power) {
   PetscFunctionBeginUser;
   *power = 0;
   if (std::none_of(species.begin(), species.end(), [](const Phase &p) { return p.boxed && is_stretched(p.material); }))
     PetscFunctionReturn(0);
   ExactSums sum(1);
-  for (const BodyInBox &body : seen)
+  for (const BodyInBox &body : bodies)
     if (is_stretched(body.phase->material))
       StretchedBody(*body.box, *body.phase).add_power((*body.velocity)[0], 0, &sum);
   PetscCall(sum.reduce(domain_->comm(), power));
@@ -173,35 +173,36 @@ PetscErrorCode FreeBodies::stretch_power(const std::vector<BodyInBox> &seen, con
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodies::show_fractions(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) {
+PetscErrorCode FreeBodies::put_fractions_on_grid(const std::vector<BodyInBox> &bodies,
+                                                 const std::map<int, Phase *> &phases) {
   PetscFunctionBeginUser;
   PetscCall(connect_fractions());
-  std::vector<ActiveSegments> filled(seen.size());
-  std::vector<SegmentValues> values(seen.size());
-  for (std::size_t b = 0; b < seen.size(); ++b) {
+  std::vector<ActiveSegments> filled(bodies.size());
+  std::vector<SegmentValues> values(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
     constexpr double least = 1e-300;
-    if (phases.count(seen[b].species) == 0) continue;
+    if (phases.count(bodies[b].species) == 0) continue;
     const Box &box = bodies_[b].box;  // that the exchange knows
     const auto take = [&](const Field &phi, const OccupiedRows &rows) {
       filled[b].build(box, phi[0], rows, least, 0, 0);
       values[b].take(phi, filled[b]);
     };
-    if (seen[b].phase == &bodies_[b].phase) {
+    if (bodies[b].phase == &bodies_[b].phase) {
       take(bodies_[b].phase.fraction, bodies_[b].phase.rows);
       continue;
     }
     Field phi = scratch(box, 1);
     phi.fill(0, 0);
-    copy_shared(*seen[b].box, seen[b].phase->fraction, 0, &phi);
+    copy_shared(*bodies[b].box, bodies[b].phase->fraction, 0, &phi);
     OccupiedRows rows;
     rows.find_in_box(box, std::as_const(phi)[0], 1);
     take(phi, rows);
   }
   for (const auto &[species, phase] : phases) {
     std::vector<BoxExchange::Contribution> of_species;
-    for (std::size_t b = 0; b < seen.size(); ++b)
-      of_species.push_back(seen[b].species == species ? BoxExchange::Contribution{&values[b], &filled[b]}
-                                                      : BoxExchange::Contribution{});
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      of_species.push_back(bodies[b].species == species ? BoxExchange::Contribution{&values[b], &filled[b]}
+                                                        : BoxExchange::Contribution{});
     const View phi = phase->fraction[0];
     for (const Segment &row : domain_->rows()) {
       const Segment held = phase->rows.within(row);
@@ -220,7 +221,8 @@ std::vector<BodyInBox> FreeBodies::list() const {
 
 namespace {
 
-// What show() sends of a box at a time: the species, one quantity, and phi where that lives.
+// The data of a box that put_on_grid() sends at a time: the species, one quantity, and phi at the points of that
+// quantity.
 enum { species_shown, value_shown, held_shown, all_shown };
 constexpr int fraction = -1;  // as a quantity; the others are components of B
 
@@ -251,18 +253,19 @@ void fill_shown(const BodyInBox &body, const Box &block, int quantity, Field *fi
 
 }  // namespace
 
-PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::map<int, Phase *> &phases) const {
+PetscErrorCode FreeBodies::put_on_grid(const std::vector<BodyInBox> &bodies,
+                                       const std::map<int, Phase *> &phases) const {
   PetscFunctionBeginUser;
   const std::vector<TensorComponent> &components = tensor_components(domain_->dimension());
   std::vector<Box> blocks;
   std::vector<BoxExchange::NumberedBox> boxes;
   // Cells of bodies, and those around that B is extended to.
-  for (const BodyInBox &body : seen)
+  for (const BodyInBox &body : bodies)
     blocks.push_back(body.phase->block(*body.box, ExteriorLayers::layers, ExteriorLayers::layers + 1));
   std::ptrdiff_t largest = 0;
-  for (std::size_t b = 0; b < seen.size(); ++b) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
     largest = std::max<std::ptrdiff_t>(largest, blocks[b].layout().size);
-    boxes.push_back({&blocks[b], seen[b].number});
+    boxes.push_back({&blocks[b], bodies[b].number});
   }
   BoxExchange exchange(*domain_, all_shown);
   PetscCall(exchange.connect(boxes));
@@ -277,7 +280,7 @@ PetscErrorCode FreeBodies::show(const std::vector<BodyInBox> &seen, const std::m
       for (auto &[s, field] : most) field.clear();
     const auto field_of = [&](std::size_t b) -> const Field & {
       block = Field::in_memory(blocks[b], all_shown, memory.data());
-      fill_shown(seen[b], blocks[b], quantity, &block);
+      fill_shown(bodies[b], blocks[b], quantity, &block);
       return block;
     };
     PetscCall(exchange.collect(field_of, [&](int number, std::ptrdiff_t at, int count, const double *const *values) {
@@ -312,7 +315,7 @@ std::size_t FreeBodies::bytes() const {
   std::size_t sum = exchange_.bytes();
   for (const Tools &own : tools_) sum += own.memory.size() * sizeof(double);
   for (const Body &body : bodies_) sum += body.phase.bytes() + body.force.bytes();
-  for (const Seen &own : seen_) sum += own.moved.bytes() + own.velocity.bytes();
+  for (const SynchronisedCopy &own : copies_) sum += own.moved.bytes() + own.velocity.bytes();
   return sum;
 }
 

@@ -20,7 +20,7 @@ struct BodyAtSurfaces {
   const Phase *phase;
   Box box;     ///< its cells and one layer around them
   Int3 first;  ///< index of its first cell in the box of the phase
-  /// Of every phase that bears loads: labels and phi, with one ghost layer behind boundaries.
+  /// Labels and phi of every phase that bears loads, with one ghost layer behind boundaries.
   std::vector<Field> surfaces;
 };
 

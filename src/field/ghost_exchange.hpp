@@ -46,7 +46,7 @@ public:
   /// For boxes on the ranks of `comm`. `find` lists the ghosts of this rank; it is called at the first update.
   GhostExchange(const Box &box, MPI_Comm comm, std::function<PetscErrorCode(std::vector<Ghost> *)> find)
       : box_(&box), comm_(comm), find_(std::move(find)) {}
-  /// Of the ranks that share the ghosts.
+  /// The communicator of the ranks that share the ghosts.
   MPI_Comm comm() const { return comm_; }
 
   /// Updates every ghost within `width` layers that is not behind a boundary, on ranks that have cells. In ghost rows,

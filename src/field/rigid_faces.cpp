@@ -135,8 +135,8 @@ void RigidFaces::find_bodies_beside(int d, bool high, int j, int k, std::vector<
   const int shift = d == 0 && high, cells = static_cast<int>(found->size());
   const Row faces = row(d, j + (d == 1 && high), k + (d == 2 && high));
   std::fill(found->begin(), found->end(), -1);
-  for (const Run *run = faces.runs; run != faces.runs_end; ++run)
-    for (int i = std::max(run->begin - shift, 0); i < std::min(run->end - shift, cells); ++i) (*found)[i] = run->body;
+  for (const Run &run : faces.runs)
+    for (int i = std::max(run.begin - shift, 0); i < std::min(run.end - shift, cells); ++i) (*found)[i] = run.body;
 }
 
 void RigidFaces::set(const Int3 &layers, int rows, std::array<Component, 3> components) {

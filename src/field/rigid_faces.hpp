@@ -124,10 +124,10 @@ public:
     int begin, end, body;
   };
   struct Row {
-    const Cut *cuts = nullptr, *cuts_end = nullptr;
-    const Run *runs = nullptr, *runs_end = nullptr;
+    Slice<Cut> cuts;
+    Slice<Run> runs;
     bool all = false;  ///< all faces of the row are inside, including its ghosts
-    bool empty() const { return cuts == cuts_end && runs == runs_end; }
+    bool empty() const { return cuts.empty() && runs.empty(); }
   };
 
   std::vector<RigidMotion> motions;
@@ -146,8 +146,9 @@ public:
   Row row(int a, int j, int k) const {
     const Component &c = components_[a];
     const std::size_t at = (j + layers_[1]) + std::size_t(rows_) * (k + layers_[2]);
-    return {c.cuts.data() + c.first_cut[at], c.cuts.data() + c.first_cut[at + 1], c.runs.data() + c.first_run[at],
-            c.runs.data() + c.first_run[at + 1], c.all[at] != 0};
+    return {{c.cuts.data() + c.first_cut[at], c.cuts.data() + c.first_cut[at + 1]},
+            {c.runs.data() + c.first_run[at], c.runs.data() + c.first_run[at + 1]},
+            c.all[at] != 0};
   }
   /// Sets found[i] to the body on the low or high face across d of cell i of row (j, k), or to -1. The size of `found`
   /// is the number of cells.

@@ -13,12 +13,6 @@ namespace eulastic {
 /// boundaries; those of a band cover the cells and `margin` ghost layers around them.
 class ActiveSegments {
 public:
-  struct Range {
-    const Segment *first, *last;
-    const Segment *begin() const noexcept { return first; }
-    const Segment *end() const noexcept { return last; }
-  };
-
   /// Lists the points (i,j,k) for which a centre (i + di, j + dj, k + dk), -low <= di,dj,dk <= high, has value >=
   /// threshold. Segments consist of whole vectors of 8 points where the row has them, so that they contain further
   /// points. `value` needs low and high ghosts; idle rows of `rows` are not read.
@@ -32,14 +26,12 @@ public:
   /// of 8.
   void build_faces(const Box &box, const ActiveSegments &cells);
 
-  Range row(int j, int k) const noexcept {
+  Slice<Segment> row(int j, int k) const noexcept {
     const int r = (j - begin_[1]) + rows_y_ * (k - begin_[2]);
     return {segments_.data() + first_[r], segments_.data() + first_[r + 1]};
   }
   /// Whether row (j, k) exists and has no segments.
-  bool idle(int j, int k) const noexcept {
-    return j >= begin_[1] && j < begin_[1] + rows_y_ && row(j, k).begin() == row(j, k).end();
-  }
+  bool idle(int j, int k) const noexcept { return j >= begin_[1] && j < begin_[1] + rows_y_ && row(j, k).empty(); }
   /// Whether the rows j_begin <= j < j_end of plane k, as far as they exist, have no segments.
   bool idle_rows(int j_begin, int j_end, int k) const noexcept {
     const int r = rows_y_ * (k - begin_[2]) - begin_[1];

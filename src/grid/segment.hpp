@@ -11,6 +11,17 @@ struct Segment {
   int size() const noexcept { return i_end - i_begin; }
 };
 
+/// A non-owning view of consecutive elements.
+template <class T>
+struct Slice {
+  const T *first = nullptr, *last = nullptr;
+  const T *begin() const noexcept { return first; }
+  const T *end() const noexcept { return last; }
+  std::size_t size() const noexcept { return last - first; }
+  bool empty() const noexcept { return first == last; }
+  const T &operator[](std::size_t n) const noexcept { return first[n]; }
+};
+
 /// A non-owning view of one ghosted field. `origin` points to local cell (0,0,0); the stride in x is 1.
 template <class T>
 struct BasicView {

@@ -16,7 +16,7 @@ inline std::uint64_t mix_bits(std::uint64_t x) noexcept {
   return x ^ (x >> 31);
 }
 
-/// Of values[0..count) at positions first, first + 1, ... of their dataset; pieces add up modulo 2^64.
+/// Checksum of values[0..count) at positions first, first + 1, ... of a dataset; pieces add up modulo 2^64.
 template <class T>
 std::uint64_t checksum(const T *values, std::size_t count, std::uint64_t first) noexcept {
   static_assert(sizeof(T) <= sizeof(std::uint64_t), "plain numbers");

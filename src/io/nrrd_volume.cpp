@@ -34,7 +34,7 @@ public:
     if (std::string wrong = set_count(header_.sizes, ascii ? 2 : header_.bytes, most); !wrong.empty()) return wrong;
     if (std::string wrong = set_spacing(header_.spacing); !wrong.empty()) return wrong;
     std::copy(header_.corner.begin(), header_.corner.end(), corner_.begin());
-    // zlib reads what is not packed as it is.
+    // zlib reads uncompressed files unchanged.
     const int descriptor = ::open(header_.data_file.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0 || ::lseek(descriptor, header_.data, SEEK_SET) < 0 || !(stream_ = gzdopen(descriptor, "rb"))) {
       if (descriptor >= 0) (void)::close(descriptor);

@@ -15,7 +15,7 @@ public:
   RunDirectory &operator=(const RunDirectory &) = delete;
   ~RunDirectory();  ///< unlocks; files of a run that was not accepted go
 
-  /// What becomes of the files of an earlier run (see is_output_file); all others stay.
+  /// Treatment of the files of an earlier run (see is_output_file); other files are kept.
   enum class Earlier { refused, replaced, continued };
   /// Collective. Makes `path` (parents too) and locks it. `refusal` is empty, or one line on every rank: it is not
   /// a directory, holds files and `earlier` is refused, is in use by another run, or cannot be written. Nothing that
@@ -27,7 +27,7 @@ public:
   /// a crash left half written, and the summary, which is not true any more.
   PetscErrorCode accept(MPI_Comm comm);
 
-  /// Where the run writes: until it is accepted beside what it will replace.
+  /// The directory to which the run writes; until it is accepted, a subdirectory if it replaces an earlier run.
   std::string path() const { return pending_ && earlier_ == Earlier::replaced ? path_ + "/.new" : path_; }
   std::string file(const std::string &name) const { return path() + "/" + name; }
 

@@ -12,7 +12,7 @@ namespace eulastic {
 /// 17 significant digits, whatever the locale: the text reads back as the same double. "nan", "inf", "-inf".
 std::string format_double(double value);
 
-/// Where a file lives until it is complete.
+/// Path of a file until it is complete.
 std::string temporary_name(const std::string &path);
 /// Local. Syncs `temporary_name(path)` and renames it to `path`, or removes it if there is an error: `wrong`, which
 /// says why it is not complete, or one of this. Returns the error, one line, or nothing.

@@ -22,11 +22,11 @@ public:
 
   /// Voxels along x, y, z; a plane has 1 along z.
   const Int3 &count() const { return count_; }
-  /// What the file says of them, nan where it says nothing. Corner: the low one of the first voxel.
+  /// Spacing and low corner of the first voxel as given in the file; nan if the file does not give them.
   const Real3 &spacing() const { return spacing_; }
   const Real3 &corner() const { return corner_; }
 
-  /// As ReadVoxels; finite values outside 0 ... 1 and nan are refused.
+  /// Implements ReadVoxels; refuses values outside 0 ... 1 and nan.
   std::string read(const Int3 &begin, const Int3 &end, double *fractions);
 
 protected:

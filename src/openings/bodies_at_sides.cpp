@@ -22,7 +22,7 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
   // Phase, direction and side in one number, as ranks have to agree on one of several places in one reduction.
   const auto hold = [&](int phase, int d, bool high) { found[0] = std::max(found[0], phase * 6 + 2 * d + high); };
   PetscFunctionBeginUser;
-  const std::vector<BodyInBox> boxed = boxed_.list();
+  const std::vector<BodyInBox> boxed = boxed_.bodies().list();
   for (std::size_t b = 0; b < boxed.size(); ++b) {
     const BodyInBox &body = boxed[b];
     for (const auto [d, high] : flow_.domain.sides())
@@ -63,25 +63,25 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
 PetscErrorCode BodiesAtSides::take_out_boxed(const std::vector<std::size_t> &leaving) {
   std::vector<std::pair<int, Int3>> last;
   PetscFunctionBeginUser;
-  const std::vector<BodyInBox> all = boxed_.list();
+  const std::vector<BodyInBox> all = boxed_.bodies().list();
   for (const std::size_t b : leaving) {
     Int3 middle = all[b].phase->extent(*all[b].box).middle();
     for (int d = 0; d < 3; ++d) middle[d] += all[b].box->layout().begin[d];
     last.emplace_back(all[b].number, middle);
   }
-  boxed_.remove(leaving);
+  boxed_.bodies().remove(leaving);
   PetscCall(boxed_.refit());
   PetscCall(flow_.bodies.set_last_references(flow_.domain, last));
   PetscFunctionReturn(0);
 }
 
-// Those that leave whole, or the others of which no more is left than is beside the side.
+// Removes the leaving bodies: those that are removed whole, or the others once all their solid lies beside a boundary.
 PetscErrorCode BodiesAtSides::take_out_bodies(bool whole) {
   std::map<int, Leaving> leaves;
   BodyOwners owners;
   std::vector<Int3> references;
   const auto concerned = [&](const Phase &phase) { return !is_held(phase) && leave_whole(phase.material) == whole; };
-  // All ranks with cells of a body learn the last that any says of it.
+  // All ranks with cells of a body agree on the largest value of Leaving that any of them found.
   const auto agree = [&] {
     std::vector<double> here, owned(static_cast<std::size_t>(owners.owned().size()), 0);
     PetscFunctionBeginUser;
@@ -140,7 +140,7 @@ PetscErrorCode BodiesAtSides::sum_fractions(Field *sum) {
   std::map<int, Phase> shown;
   PetscFunctionBeginUser;
   *sum = Field(flow_.domain, 1);
-  PetscCall(boxed_.show_all_fractions(&shown));
+  PetscCall(boxed_.find_all_fractions(&shown));
   for (std::size_t p = 0; p < flow_.now.phases.size(); ++p) {
     const Phase &phase = flow_.now.phases[p].boxed ? shown[static_cast<int>(p)] : flow_.now.phases[p];
     const ConstView phi = phase.fraction[0];
@@ -149,7 +149,7 @@ PetscErrorCode BodiesAtSides::sum_fractions(Field *sum) {
   PetscFunctionReturn(0);
 }
 
-// All see the same fractions: bodies of one stretch come in as far from each other as they are.
+// All bodies are compared with the same fractions, so that bodies of one stretch keep their distances when they enter.
 PetscErrorCode BodiesAtSides::find_coming(const std::vector<int> &labels, std::vector<Coming> *states) {
   Field fractions;
   PetscFunctionBeginUser;
@@ -161,7 +161,7 @@ PetscErrorCode BodiesAtSides::find_coming(const std::vector<int> &labels, std::v
   };
   std::vector<Candidate> candidates;
   states->assign(labels.size(), Coming::has_left);
-  for (const BodyInBox &body : boxed_.list()) {
+  for (const BodyInBox &body : boxed_.bodies().list()) {
     const auto found = std::find(labels.begin(), labels.end(), body.number);
     if (found == labels.end()) continue;
     const std::size_t n = found - labels.begin();

@@ -1,4 +1,4 @@
-// Bodies where volume crosses sides of the box: they flow out, or are taken out whole, and come in from generators
+// Bodies at open boundaries: they flow out or are removed whole, and copies enter from inlet generators
 // (docs/method.md, section 20).
 #pragma once
 
@@ -20,7 +20,7 @@ public:
   PetscErrorCode update_after_labels() override;
 
 private:
-  /// What becomes of a body that has left its inlet generator, as far as a rank knows: all others say has_left.
+  /// State of a body that has passed the end of its inlet generator, on the rank that stores it; has_left on others.
   enum class Coming : int { has_left, waits, comes_in };
   PetscErrorCode check_sides(bool start);
   PetscErrorCode take_out_bodies(bool whole);

@@ -118,7 +118,7 @@ PetscErrorCode InletGenerators::begin_resume() {
 // visit(stretch, label) for all cells of bodies in stretches, one after the other.
 template <class Visit>
 void InletGenerators::for_bodies(const Visit &visit) const {
-  const std::vector<BodyInBox> boxed = boxed_.list();
+  const std::vector<BodyInBox> boxed = boxed_.bodies().list();
   for (int s = 0; s < static_cast<int>(stretches_.size()); ++s) {
     for (const BodyInBox &body : boxed) {
       const ConstView phi = body.phase->fraction[0];

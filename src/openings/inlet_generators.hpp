@@ -27,17 +27,19 @@ public:
   PetscErrorCode constrain(double dt) override;
   int count() const { return static_cast<int>(stretches_.size()); }
 
-  /// Bodies that have passed the end of their stretch, ascending; they keep being named until forget().
+  /// Returns the labels, ascending, of the bodies that have passed the end of their stretch and have not been
+  /// forgotten.
   PetscErrorCode find_passed(std::vector<int> *labels) const;
-  /// Where a body comes in, relative to where it is.
+  /// Returns the shift, in cells, from a body to the copy of it that enters.
   Int3 shift_of(int label) const;
-  /// A body is not in its stretch any more; another one has come into that.
+  /// Removes a body from its stretch.
   void forget(int label) { inside_.erase(label); }
+  /// Adds the body `other` to the stretch of a body.
   void come_in(int label, int other) { inside_[other] = inside_.at(label); }
 
-  /// By the labels of bodies: which stretch each is in, if in any. All that a restart needs.
+  /// The stretch of each body that is in one, by its label; the persistent state.
   const std::map<int, int> &inside() const { return inside_; }
-  /// Of which every rank names some. Collective.
+  /// Sets inside() to the union over all ranks of `here`. Collective.
   PetscErrorCode set_inside(const std::map<int, int> &here);
 
 private:
@@ -45,7 +47,8 @@ private:
     int d, high, cells;
     MPI_Comm line;  ///< ranks along d
   };
-  template <class Visit>  ///< those of a block, and those just beyond the stretch
+  /// Visits the cells of a block that are in the stretch or just beyond its end.
+  template <class Visit>
   static void for_cells(const Box &box, const Stretch &stretch, const Visit &visit);
   template <class Visit>
   void for_bodies(const Visit &visit) const;

@@ -16,7 +16,7 @@ bool leave_whole(const Material &material) { return material.has_surface() || ma
 
 namespace {
 
-// The cells of a block that are not within so many layers of an open side.
+// Returns the cells of a block that are more than `layers` layers away from every open boundary.
 Extent away_from_open_sides(const Box &box, int layers) {
   Extent away{{0, 0, 0}, box.cells()};
   for (int d = 0; d < box.dimension(); ++d) {

@@ -1,4 +1,4 @@
-// Bodies at sides of the box that they leave through.
+// Detection and removal of bodies that leave the domain through a boundary.
 #pragma once
 
 #include "field/phase.hpp"
@@ -7,25 +7,25 @@
 
 namespace eulastic {
 
-/// Cells beside a side that volume crosses where no body is.
+/// Layers of cells beside an open boundary that bodies must not occupy.
 constexpr int free_layers = 2;
 
-/// Whether this rank has more phi than that in any cell within `layers` of a side.
+/// Whether phi exceeds `more_than` in any owned cell within `layers` of a boundary.
 bool has_solid(const Box &box, ConstView fraction, int d, bool high, int layers, double more_than);
-/// Whether bodies are taken out, all of each, when they come there: what is on their surface, and another viscosity,
-/// is not followed through a side. All others flow out, and what is left within `free_layers` is taken out.
+/// Whether bodies of a material are removed whole when they reach an open boundary: those with a surface or a viscosity
+/// of their own. Other bodies flow out, and the rest within `free_layers` is removed.
 bool leave_whole(const Material &material);
-/// Of a body, by its label: it has solid at an open side, and maybe elsewhere too.
+/// State of a body at an open boundary; `stays`: it also has solid elsewhere.
 enum class Leaving { no, leaves, stays };
-/// Marks the labels of solid that this rank has at a side. Where they leave whole, what has no label (less than
-/// label_threshold) is gone at once.
+/// Marks the labels of owned solid at a boundary as leaving. `whole`: bodies are removed whole; cells without a label
+/// (phi below label_threshold) are emptied at once.
 void mark_leaving(const Box &box, int d, bool high, int layers, bool whole, Phase *phase,
                   std::map<int, Leaving> *leaves);
-/// Those stay, of bodies that are marked on any rank, of which this one has BodyCells at no open side.
+/// Marks as staying those of the leaving bodies that have owned cells away from all open boundaries.
 void mark_staying(const Box &box, int layers, const Phase &phase, std::map<int, Leaving> *leaves);
-/// Of a body in a box of its own: whether it leaves through an open side.
+/// Whether a body in a box of its own leaves through an open boundary.
 bool leaves_box(const BodyInBox &body);
-/// Takes the bodies that leave out of owned cells. What is around them is the caller's.
+/// Removes the leaving bodies from owned cells. Ghosts, B around the bodies and rows are left to the caller.
 void take_out(const Box &box, const std::map<int, Leaving> &leaves, Phase *phase);
 
 }  // namespace eulastic

@@ -80,7 +80,7 @@ PetscErrorCode LoadedOutlets::end_projection(double dt, const Field &divergence,
   std::vector<double> flow;
   PetscFunctionBeginUser;
   PetscCall(measure(flow_.velocity_star, &flow));
-  loads_.add_up(flow_.domain, loads_.settle(dt, flow), increment);
+  loads_.add_up(flow_.domain, loads_.end(dt, flow), increment);
   for (FlowPart *part : flow_.parts) PetscCall(part->observe_increment(increment));
   PetscCall(correct_velocity(flow_.domain, flow_.fluid.density, dt, 0, increment, divergence, flow_.velocity_star,
                              flow_.now.pressure));

@@ -1,4 +1,4 @@
-// The pressure on sides with a load behind them, found together with the flow through them (openings/outlet_loads.hpp).
+// The pressure on boundaries with a load, computed together with the flow through them (openings/outlet_loads.hpp).
 #pragma once
 
 #include "flow/projection.hpp"

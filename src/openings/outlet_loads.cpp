@@ -62,8 +62,8 @@ void OutletLoads::begin(const BoundaryConditions &sides, double middle, double d
   }
 }
 
-// The matrix has a dominant diagonal, as a pressure pushes back most where it is: it is never singular.
-std::vector<double> OutletLoads::settle(double dt, const std::vector<double> &flow) {
+// A pressure acts most on the flow through its own boundary, so that the diagonal dominates and the matrix is regular.
+std::vector<double> OutletLoads::end(double dt, const std::vector<double> &flow) {
   const std::size_t count = loads_.size();
   std::vector<double> a(count * count), changes(count);  // columns
   for (std::size_t s = 0; s < count; ++s) {

@@ -1,5 +1,6 @@
-// What is behind pressure sides: a resistance, or a resistance before a capacity that another one drains (three-element
-// Windkessel). The pressure on the side follows the flow through it, implicitly (docs/method.md, section 20).
+// Models behind pressure boundaries: a resistance, or a three-element Windkessel (a resistance, then a capacity with a
+// second resistance). The pressure on the boundary follows implicitly from the flow through it (docs/method.md,
+// section 20).
 #pragma once
 
 #include "field/boundaries.hpp"
@@ -8,29 +9,30 @@ namespace eulastic {
 
 class OutletLoads {
 public:
-  /// No side has a load.
+  /// Whether no boundary has a load.
   static bool none(const BoundaryConditions &sides);
 
   explicit OutletLoads(const BoundaryConditions &sides);
   std::size_t bytes() const;
   int count() const { return static_cast<int>(loads_.size()); }
-  /// The side of a load: direction, high.
+  /// The boundary of a load: direction, high.
   std::array<int, 2> side(int n) const { return {loads_[n].direction, loads_[n].high}; }
-  /// What a pressure of 1 on that side alone means: p, and the flow out of each loaded side per time of it.
+  /// Sets the response to a pressure of 1 on the boundary of load n alone: the pressure, and the flow out of each
+  /// loaded boundary per time.
   void set_response(int n, Field &&pressure, const std::vector<double> &flow);
 
-  /// Begins a step of length dt. `middle`: the time at which the pressure on the sides is that of the step; `flow`:
-  /// volume that leaves through each side per time at the start of the step. Sets the pressures that are expected.
+  /// Begins a step of dt and predicts the pressures. `middle`: time of the pressure in the step; `flow`: volume per
+  /// time that leaves through each boundary at the start of the step.
   void begin(const BoundaryConditions &sides, double middle, double dt, const std::vector<double> &flow);
-  /// Ends the step. `flow` as the projection under the expected pressures has left it; returns by how much these
-  /// change.
-  std::vector<double> settle(double dt, const std::vector<double> &flow);
-  /// increment = sum of changes times responses, ghosts included.
+  /// Ends the step: computes the pressures that are consistent with the loads and returns their differences from the
+  /// predicted ones. `flow`: after the projection with the predicted pressures.
+  std::vector<double> end(double dt, const std::vector<double> &flow);
+  /// Computes increment = sum of changes times responses, including ghosts.
   void add_up(const Box &box, const std::vector<double> &changes, Field &increment) const;
 
-  /// `sides` with the present pressures on those that are loaded.
+  /// Returns `sides` with the present pressures of those that have loads.
   BoundaryConditions with_pressures(const BoundaryConditions &sides) const;
-  /// Pressures of the capacities and on the sides: what is carried from step to step.
+  /// The persistent state: pressures of the capacities and on the boundaries.
   std::vector<double *> numbers();
 
 private:
@@ -38,7 +40,7 @@ private:
     int direction, high;
     OutletLoad spec;
     double capacity = 0;  ///< pressure of the capacity at the end of the last step
-    double pressure = 0;  ///< on the side, of the last step
+    double pressure = 0;  ///< on the boundary, of the last step
     /// Of the present step: pressure = base + share x flow at its end; capacity = kept + gain x that flow.
     double base = 0, share = 0, kept = 0, gain = 0;
     Field response;

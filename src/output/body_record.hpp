@@ -1,4 +1,4 @@
-// What summary.json and bodies.h5 say of one body.
+// The values of one body in summary.json and bodies.h5.
 #pragma once
 
 #include "adhesion/bond_records.hpp"

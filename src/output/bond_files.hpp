@@ -1,4 +1,4 @@
-// What a run with adhesion leaves of single bonds: adhesion_bonds.csv, adhesion_events.csv.
+// Files of single bonds of a run with adhesion: adhesion_bonds.csv, adhesion_events.csv.
 #pragma once
 
 #include "adhesion/adhesion.hpp"

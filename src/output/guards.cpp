@@ -129,7 +129,7 @@ PetscErrorCode Guards::check_finite(const Solver &solver, Stop *stop) const {
   if (*stop) PetscFunctionReturn(0);
   FlowExtremes extremes;
   PetscCall(measure_extremes(solver.domain(), solver.state().velocity, solver.state().phases, &extremes,
-                             solver.boxed().list()));
+                             solver.boxed().bodies().list()));
   if (extremes.first_non_finite >= 0) *stop = not_finite(solver, extremes);
   PetscFunctionReturn(0);
 }

@@ -80,7 +80,7 @@ PetscErrorCode Outputs::measure() {
   PetscFunctionBeginUser;
   Measured &m = now_;
   if (m.time == solver_->state().time) PetscFunctionReturn(0);
-  PetscCall(look(&now_));
+  PetscCall(measure_all(&now_));
   if (solver_->bodies().first_volumes().empty()) {
     std::vector<double> volumes;
     for (const BodyMeasure &body : m.bodies) volumes.push_back(body.volume);
@@ -166,7 +166,7 @@ PetscErrorCode Outputs::sync(OutputsPosition *position) {
   PetscFunctionReturn(0);
 }
 
-// What the time loop knows of the run, and how fast it was.
+// Adds the progress of the time loop and its speed.
 void Outputs::add_progress(const RunSummary &run, const Totals &totals, Json *json) const {
   const State &state = solver_->state();
   const double cells = domain_->domain_cell_count(), steps = double(state.step), updates = cells * steps;
@@ -229,7 +229,8 @@ PetscErrorCode Outputs::write_summary(const RunSummary &run) {
   if (bodies_file_ && run.exit_reason != "output_failed") PetscCall(bodies_file_->flush());
   Totals totals{double(solver_->bytes()), 0, double(state.markers.size())};
   for (const Phase &phase : state.phases) totals.evolving += phase.tensor.evolving.points();
-  for (const BodyInBox &body : solver_->boxed().list()) totals.evolving += body.phase->tensor.evolving.points();
+  for (const BodyInBox &body : solver_->boxed().bodies().list())
+    totals.evolving += body.phase->tensor.evolving.points();
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &totals, 3, MPI_DOUBLE, MPI_SUM, domain_->comm()));
   std::uint64_t hash = 0;
   std::vector<Json> files, sides, verdicts, bodies;

@@ -34,7 +34,7 @@ struct OutputsPosition {
   BondFiles::Position bonds;
 };
 
-/// What summary.json says of a run beside its state and outputs; docs/outputs.md describes every key.
+/// Values of summary.json other than those of the state and the outputs; docs/outputs.md describes every key.
 struct RunSummary {
   std::string exit_reason;  ///< time_end, steps, signal, wall_limit, nonfinite, guard, output_failed or unfinished
   std::string checkpoint;   ///< file, in the same directory, from which the run can continue; empty = none
@@ -55,42 +55,42 @@ public:
   /// Syncs all rows to the disk and returns their position.
   PetscErrorCode sync(OutputsPosition *position);
   /// Writes all outputs that are due: the first state at or after each multiple of the interval, with its true time.
-  /// Where phases are half a step behind, a row of series.csv waits, except for the last one.
+  /// If phases are half a step behind, a row of series.csv is completed in the next step, except for the last one.
   PetscErrorCode write_due(bool last);
   bool row_waits() const { return waits_; }
-  /// Before a step of length dt: what a row during the step or at its end needs of the forces of surfaces is kept.
+  /// Called before a step of dt: stores the samples of surfaces that a row during the step or at its end needs.
   void prepare_step(double dt);
-  /// After a restart: the row of the checkpoint waits again, if it did.
+  /// Called after a restart: measures the row of the checkpoint again if it was not complete.
   PetscErrorCode resume_row();
-  /// In the middle of the next step, of length dt: interpolates the waiting row between this middle and the last; the
-  /// next write_due() writes it.
+  /// Called in the middle of the next step, of dt: interpolates the waiting row between this middle and the last one;
+  /// the next write_due() writes it.
   PetscErrorCode record_middle(double dt);
-  /// Later in that step, with its pressure and the velocity of its start: the same for the flow through the boundaries.
+  /// Called later in that step, with its pressure and the velocity of its start: the same for flows through boundaries.
   PetscErrorCode record_pressure(double dt);
   /// Writes the row that waits if there is no next step.
   PetscErrorCode write_waiting();
-  /// The last row, once; null if there is no new one.
+  /// Returns the last row; null if it has been returned before.
   const Measured *take_row();
   /// One line, once per run, if a red cell or any body is strongly strained in the last row, or nothing.
   std::string strain_warning();
-  /// Measures the state, if that has not been done.
+  /// Measures the state if it has not been measured yet.
   PetscErrorCode measure();
-  /// As of the last measure().
+  /// The result of the last measure().
   const Measured &measured() const { return now_; }
   /// One line about bodies of a few cells at t = 0, which the guards ignore, or nothing. Collective, after measure().
   PetscErrorCode unresolved_bodies(std::string *line) const;
   /// Writes summary.json. Collective.
   PetscErrorCode write_summary(const RunSummary &run);
-  /// Those of the summary that was written last.
+  /// The verdicts of the last summary.
   const std::vector<Verdict> &verdicts() const { return verdicts_; }
 
 private:
   int few_cells() const { return domain_->dimension() == 3 ? 8 : 4; }
   bool resolved(double volume) const { return volume >= few_cells() * domain_->cell_volume(); }
-  /// Of these bodies, with the loads that were measured.
+  /// Returns the records of bodies, with the measured loads.
   std::vector<BodyRecord> records(const Measured &measured, const std::vector<BodyMeasure> &bodies,
                                   const std::vector<SurfaceMeasure> &surfaces) const;
-  /// Of all ranks: bytes of fields, points where B is evolved, and markers of membranes.
+  /// Totals over all ranks: bytes of fields, points where B is evolved, markers of membranes.
   struct Totals {
     double bytes, evolving, markers;
   };
@@ -100,9 +100,9 @@ private:
   PetscErrorCode measure_largest(Measured *measured);
   double largest_stretch(const std::vector<BodyMeasure> &bodies, const std::vector<SurfaceMeasure> &surfaces,
                          std::size_t b) const;
-  /// Of times within the last step.
+  /// Writes snapshots of times within the last step.
   PetscErrorCode write_passed_snapshots(const std::vector<double> &times);
-  PetscErrorCode look(Measured *measured);
+  PetscErrorCode measure_all(Measured *measured);
   PetscErrorCode measure_energy(Measured *measured);
   void set_energy_scales(EnergyState *energy) const;
   PetscErrorCode await_row(double time_before);
@@ -115,7 +115,7 @@ private:
 
   static constexpr int most_bodies = 500;  ///< that summary.json lists
   Config config_;
-  double probes_time_ = -1;                 ///< until which those of a run that goes on stay
+  double probes_time_ = -1;                 ///< time up to which a continued run keeps its probes
   bool membranes_ = false, loads_ = false;  ///< whether there are such bodies, or bodies that bear loads
   const Domain *domain_ = nullptr;
   Solver *solver_ = nullptr;
@@ -126,8 +126,8 @@ private:
   BondFiles bond_files_;  ///< of a scene with adhesion
   std::unique_ptr<SnapshotWriter> snapshots_;
   Due series_due_, snapshot_due_;
-  Measured now_;      ///< as of the last measure()
-  Measured row_;      ///< the one that waits, as it was in the middle of the last step, or is written
+  Measured now_;      ///< by the last measure()
+  Measured row_;      ///< the waiting row, as measured in the middle of the last step; or the row to be written
   Measured written_;  ///< of the last row
   bool waits_ = false, seen_ = false, is_new_ = false;
   double series_time_before_ = -1;  ///< of the row before the one that waits

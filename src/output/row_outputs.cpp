@@ -95,7 +95,7 @@ void interpolate_between(const Measured &other, double share, Measured *measured
 
 // All but volume drifts and strains, of phases as SynchronisedState::phases() has them; `measured`: of another time, or
 // of this velocity.
-PetscErrorCode Outputs::look(Measured *measured) {
+PetscErrorCode Outputs::measure_all(Measured *measured) {
   PetscFunctionBeginUser;
   const State &state = solver_->state();
   Measured &m = *measured;
@@ -197,7 +197,7 @@ void Outputs::set_energy_scales(EnergyState *energy) const {
 PetscErrorCode Outputs::await_row(double time_before) {
   PetscFunctionBeginUser;
   row_ = {};
-  PetscCall(solver_->synchronised().at_half_step([this] { return look(&row_); }));
+  PetscCall(solver_->synchronised().at_half_step([this] { return measure_all(&row_); }));
   waits_ = true;
   series_time_before_ = time_before;
   PetscFunctionReturn(0);
@@ -212,7 +212,7 @@ PetscErrorCode Outputs::resume_row() {
 }
 
 void Outputs::prepare_step(double dt) {
-  solver_->boxed().keep_surfaces(waits_ || series_due_.at(solver_->state().time + dt));
+  solver_->boxed().bodies().keep_surfaces(waits_ || series_due_.at(solver_->state().time + dt));
 }
 
 PetscErrorCode Outputs::record_middle(double dt) {
@@ -220,7 +220,7 @@ PetscErrorCode Outputs::record_middle(double dt) {
   StageScope stage(Stage::output);
   EventScope scope(Event::write);
   Measured next = row_;
-  PetscCall(look(&next));
+  PetscCall(measure_all(&next));
   const double share = row_.dt / (row_.dt + dt);
   interpolate_between(next, share, &row_);
   PetscCall(measure_largest(&row_));

@@ -19,7 +19,7 @@ public:
   void moved_to(const std::string &directory);
   /// Collective. All rows survive a power cut when this returns.
   PetscErrorCode sync();
-  /// Of the last profiles, negative if there are none yet.
+  /// Time of the last profiles; negative if there are none yet.
   double profile_time() const { return profile_due_.last_time; }
   /// Whether write() would write something; `series`: series.csv gets a row now.
   bool due(double time, bool series, bool last) const;

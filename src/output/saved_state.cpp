@@ -170,7 +170,7 @@ int pairs_of(const Solver &solver) {
   return adhesion ? static_cast<int>(adhesion->pairs().size()) : 0;
 }
 
-// Some bodies in boxes for each rank, the same values whoever gets them.
+// Reads the bodies in boxes, a part of them on each rank.
 PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver *solver) {
   const Domain &domain = solver->domain();
   CheckpointRecords heads{heads_name, FreeBodies::head, {}};
@@ -194,7 +194,7 @@ PetscErrorCode load_boxes(CheckpointFile *file, const std::string &path, Solver 
   }
   std::vector<double> values(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
   if (file->has(values_name)) PetscCall(file->read_own(values_name, &values));
-  solver->boxed().clear();
+  solver->boxed().bodies().clear();
   std::vector<std::vector<double>> all;
   std::string wrong;
   const double *next = values.data();
@@ -261,7 +261,7 @@ PetscErrorCode state_hash(Solver *solver, std::uint64_t *hash) {
   for (const CheckpointField &field : state.fields)
     sum += hash_points(domain, field.view, field.staggering, hash_name(field.name));
   for (const SurfaceMarker &marker : solver->state().markers) sum += hash_values(marker.packed());
-  for (const BodyInBox &body : solver->boxed().list()) sum += hash_body(body);
+  for (const BodyInBox &body : solver->boxed().bodies().list()) sum += hash_body(body);
   for (const FreeBodies::Body &body : solver->boxed().bodies().bodies())
     for (const Receptor &receptor : body.receptors)
       sum += mix_bits(hash_values(receptor.packed()) ^ static_cast<std::uint64_t>(body.number));
@@ -325,7 +325,7 @@ PetscErrorCode load_state(CheckpointFile *file, const std::string &path, Solver 
   PetscCall(solver->resume(position->stages, position->sweeps));
   if (!file->has(markers_name)) {  // they follow from the strain that membranes have
     if (auto *membranes = solver->part<MembraneTransport>()) PetscCall(membranes->place_markers());
-    PetscCall(solver->boxed().place_markers());
+    PetscCall(solver->boxed().bodies().place_markers());
   }
   if (auto *adhesion = solver->part<Adhesion>(); adhesion && !file->has(receptors_name))
     PetscCall(adhesion->place_on_bodies());

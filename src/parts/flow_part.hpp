@@ -125,6 +125,8 @@ public:
 
   // Between the steps:
 
+  /// Repairs B where the grid does not resolve it. `trace`: the largest tr B of every species. Collective.
+  virtual PetscErrorCode reset_unresolved(const std::vector<double> & /*trace*/) { return 0; }
   /// Makes the part's data of a phase on the grid consistent after its owned cells have been set. GridBodies, the first
   /// of all parts, finds the occupied rows.
   virtual PetscErrorCode rebuild_derived_fields(Phase *) { return 0; }

@@ -37,7 +37,8 @@ private:
   std::vector<char> summed_;     ///< whether an owned row has been added
 };
 
-/// How an iteration changes the increment. Every second iteration leaves its d to the next one, which still has it.
+/// Change of the increment by an iteration. Every second iteration (`later`) leaves its d to the next one, which adds
+/// both.
 enum class Increment { later, set, set_two, add, add_two };
 
 /// Updates d = sum c_i q_i + c d - shift in place and increment += scale d, both including one ghost layer, and

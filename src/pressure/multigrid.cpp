@@ -20,23 +20,11 @@ struct Multigrid::Relaxations {
 namespace {
 
 const Multigrid::Relaxations on_finest{0.7, {0.57, 1.5}}, on_coarse{0.8, {0.54, 0.8, 1.6}};
-// Levels of at most this size are gathered, because messages cost more than cells.
-constexpr double gathered_cells = 4096;
 
 std::unique_ptr<MultigridLevel> finest(const Domain &domain, const ZeroSides &zero) {
   MultigridLevel::Widths equal;
   for (int d = 0; d < 3; ++d) equal[d].assign(domain.domain_cells()[d], 1.0);
   return std::make_unique<MultigridLevel>(Partition(domain, zero), equal, domain.spacing());
-}
-
-// The level after `fine`: half the cells; or the same cells on every rank if there are few of them; or the same cells
-// on fewer ranks if half of them would be too few for a rank.
-std::unique_ptr<MultigridLevel> next_level(const MultigridLevel &fine) {
-  std::unique_ptr<MultigridLevel> next = fine.coarser();
-  if (fine.partition().ranks() == 1) return next;
-  if (fine.box().domain_cell_count() <= gathered_cells) return fine.everywhere();
-  const std::array<bool, 3> thin = fine.thin(*next);
-  return thin[0] || thin[1] || thin[2] ? fine.joined(thin) : std::move(next);
 }
 
 // Whether two levels have the same cells, on different ranks.
@@ -165,7 +153,7 @@ const Multigrid::Relaxations &Multigrid::relaxations(const MultigridLevel &level
 std::vector<Multigrid::Level> Multigrid::plan(const Domain &domain, const ZeroSides &zero) {
   std::vector<Level> levels;
   levels.push_back(finest(domain, zero));
-  while (!levels.back()->single_cell()) levels.push_back(next_level(*levels.back()));
+  while (!levels.back()->single_cell()) levels.push_back(levels.back()->next());
   return levels;
 }
 

@@ -22,6 +22,21 @@ constexpr int reach = LineOf<int>::layers;
 // Periodic image of global cell g.
 int image(int g, int cells) { return (g % cells + cells) % cells; }
 
+// Directions shared by several ranks in which one of them would have fewer than two cells of the coarse level.
+std::array<bool, 3> thin_directions(const Split &fine, const Split &coarse) {
+  std::array<bool, 3> thin{};
+  for (int d = 0; d < 3; ++d) {
+    int holders = 0, least = coarse.starts[d].back();
+    for (int p = 0; p < fine.parts(d); ++p) {
+      if (fine.cells_along(d, p) == 0) continue;
+      ++holders;
+      least = std::min(least, coarse.cells_along(d, p));
+    }
+    thin[d] = holders > 1 && least < 2;
+  }
+  return thin;
+}
+
 std::vector<double> centres(const std::vector<double> &widths) {
   std::vector<double> centre;
   double edge = 0;
@@ -89,27 +104,15 @@ std::unique_ptr<MultigridLevel> MultigridLevel::coarser() const {
   return std::make_unique<MultigridLevel>(partition_.coarse(cells), widths, finest_spacing_);
 }
 
-std::unique_ptr<MultigridLevel> MultigridLevel::everywhere() const {
-  return std::make_unique<MultigridLevel>(partition_.everywhere(), widths_, finest_spacing_);
-}
-
-std::unique_ptr<MultigridLevel> MultigridLevel::joined(const std::array<bool, 3> &along) const {
-  return std::make_unique<MultigridLevel>(partition_.joined(along), widths_, finest_spacing_);
-}
-
-std::array<bool, 3> MultigridLevel::thin(const MultigridLevel &coarse) const {
-  std::array<bool, 3> result{};
-  const Split &split = partition_.split(), &next = coarse.partition_.split();
-  for (int d = 0; d < 3; ++d) {
-    int holders = 0, least = coarse.box().domain_cells()[d];
-    for (int p = 0; p < split.parts(d); ++p) {
-      if (split.cells_along(d, p) == 0) continue;
-      ++holders;
-      least = std::min(least, next.cells_along(d, p));
-    }
-    result[d] = holders > 1 && least < 2;
-  }
-  return result;
+std::unique_ptr<MultigridLevel> MultigridLevel::next() const {
+  constexpr double gathered_cells = 4096;  // at most this size on every rank, because messages cost more than cells
+  std::unique_ptr<MultigridLevel> half = coarser();
+  if (partition_.ranks() == 1) return half;
+  if (box().domain_cell_count() <= gathered_cells)
+    return std::make_unique<MultigridLevel>(partition_.everywhere(), widths_, finest_spacing_);
+  const std::array<bool, 3> thin = thin_directions(partition_.split(), half->partition_.split());
+  if (!(thin[0] || thin[1] || thin[2])) return half;
+  return std::make_unique<MultigridLevel>(partition_.joined(thin), widths_, finest_spacing_);
 }
 
 LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const {
@@ -151,13 +154,9 @@ LineTransfer MultigridLevel::transfer(const MultigridLevel &coarse, int d) const
     line.neighbour.push_back(line.parent[i] + step);
     line.share.push_back(share);
   }
-  for (int I = -1; I <= coarse_owned; ++I) {
-    const int g = line.stride * (coarse_begin + I);
-    double low = 0, high = 0;
-    if (g >= 0 && g < fine_cells) neighbour(g, &low);
-    if (g + 1 >= 0 && g + 1 < fine_cells) neighbour(g + 1, &high);
-    line.share_low.push_back(low);
-    line.share_high.push_back(high);
+  for (int I = -1; I < coarse_owned; ++I) {
+    line.share_low.push_back(line.share[line.first + line.stride * I]);
+    line.share_high.push_back(line.share[line.first + line.stride * I + 1]);
   }
   return line;
 }

@@ -30,9 +30,8 @@ struct LineTransfer {
   std::array<std::vector<double>, 3> weight;
   LineOf<int> parent, neighbour;  ///< of fine cell i: its coarse cell, and the next one on the same side of the centre
   LineOf<double> share;           ///< weight of the neighbour in linear interpolation, 0 at walls
-  std::vector<double> share_low, share_high;  ///< [I + 1]: the same for both halves of I, -1 <= I <= cells
+  std::vector<double> share_low, share_high;  ///< [I + 1]: share of the first and second child of I, -1 <= I < cells
 
-  double *low() { return share_low.data() + 1; }
   const double *low() const { return share_low.data() + 1; }
   const double *high() const { return share_high.data() + 1; }
 };
@@ -61,14 +60,11 @@ public:
     return {low_[0].data(), high_[0].data(), low_[1][j], high_[1][j], low_[2][k], high_[2][k], shift_};
   }
 
-  /// The next coarser level: halved in the directions whose spacing is about the smallest.
+  /// The next level: coarser(); or the same cells on every rank if there are few of them; or the same cells on fewer
+  /// ranks (Partition::joined()) if half of them would be too few for a rank.
+  std::unique_ptr<MultigridLevel> next() const;
+  /// The cells halved in the directions whose spacing is about the smallest.
   std::unique_ptr<MultigridLevel> coarser() const;
-  /// The same cells, all of them on every rank.
-  std::unique_ptr<MultigridLevel> everywhere() const;
-  /// The same cells on fewer ranks: Partition::joined().
-  std::unique_ptr<MultigridLevel> joined(const std::array<bool, 3> &along) const;
-  /// Directions shared by several ranks in which one of them would have fewer than two cells of `coarse`.
-  std::array<bool, 3> thin(const MultigridLevel &coarse) const;
   /// The transfer to `coarse` along direction d.
   LineTransfer transfer(const MultigridLevel &coarse, int d) const;
 

@@ -49,11 +49,7 @@ EULASTIC_CLONES void add_products(const Box &box, const RowPart &part, ConstView
 }
 
 void add_values(const Box &box, const RowPart &part, ConstView a, ExactSums &sums) {
-  for (const Segment &s : part.rows(box)) {
-    const double *p = a.row(s.j, s.k);
-    add_row_sums<1>(
-        s.size(), box.layout().begin[0], [=](int i, auto add) EULASTIC_BODY { add(0, p[i], 1); }, sums);
-  }
+  for (const Segment &s : part.rows(box)) sums.add_row(0, a.row(s.j, s.k), s.size(), box.layout().begin[0]);
 }
 
 // to = scale to + factor from, including one ghost layer.
@@ -118,10 +114,10 @@ void ObstacleSolver::update_faces(const RigidFaces &faces) {
         for (int i = 0; i < n[0]; ++i)
           if (body[i] >= 0) open[i][face] = depth[i][face] = 0;
         const RigidFaces::Row beside = faces.row(d, row.j + (d == 1 && high), row.k + (d == 2 && high));
-        for (const RigidFaces::Cut *cut = beside.cuts; cut != beside.cuts_end; ++cut)
-          if (const int i = cut->i - shift; i >= 0 && i < n[0]) {
-            open[i][face] = cut->open;
-            depth[i][face] = 1 / (cut->link[2 * d + !high] * h[d] * h[d]);
+        for (const RigidFaces::Cut &cut : beside.cuts)
+          if (const int i = cut.i - shift; i >= 0 && i < n[0]) {
+            open[i][face] = cut.open;
+            depth[i][face] = 1 / (cut.link[2 * d + !high] * h[d] * h[d]);
           }
       }
     for (int i = 0; i < n[0]; ++i) {

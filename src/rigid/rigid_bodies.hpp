@@ -45,7 +45,7 @@ private:
   struct Source {
     std::shared_ptr<const Surface> surface;  ///< null: from a file and at rest
     std::unique_ptr<PlacedBody> body;
-    /// Of rotating bodies: with the orientation at surface_time, but the centre at `time`.
+    /// For rotating bodies: the body with its orientation at surface_time and its centre at `time`.
     std::unique_ptr<PlacedBody> before;
     BodyPlace start;
   };

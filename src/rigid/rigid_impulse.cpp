@@ -46,9 +46,8 @@ void RigidImpulse::begin(double time, double dt, double force_time, const Field 
     missing_rate_[a].assign(faces_.cuts(a).size(), 0);
     means_.velocity[a].resize(faces_.cuts(a).size());
   }
-  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(domain_, a, cut->i)) means_.velocity[a][index(a, *cut)] = velocity[a](cut->i, j, k);
+  for_cut_faces(domain_, faces_, [&](int a, const RigidFaces::Cut &cut, int j, int k) {
+    means_.velocity[a][index(a, cut)] = velocity[a](cut.i, j, k);
   });
   means_.factors.clear();
   for (const RigidMotion &motion : faces_.motions)
@@ -75,11 +74,9 @@ template <class Visit>
 void RigidImpulse::for_moving_faces(const Visit &visit) const {
   if (!faces_.moves) return;
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run) {
-      if (!motion_of(run->body).moves()) continue;
-      for (int i = std::max(run->begin, 0); i < std::min(run->end, domain_.points_end(0, a == 0)); ++i)
-        visit(a, i, j, k, run->body);
-    }
+    for_faces_inside(domain_, a, row, [&](int i, int body) {
+      if (motion_of(body).moves()) visit(a, i, j, k, body);
+    });
   });
 }
 
@@ -104,17 +101,13 @@ double RigidImpulse::curved_advection(int a, const RigidFaces::Cut &cut, int j, 
 
 // Sets the rate that cut faces miss because they get only their share of it, in the frame of (28b).
 void RigidImpulse::add_prediction(const Field &velocity, const Field &velocity_star) {
-  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    const double *before = velocity[a].row(j, k), *after = velocity_star[a].row(j, k);
-    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut) {
-      const int i = cut->i;
-      if (!owned(domain_, a, i)) continue;
-      double rate = (after[i] - before[i]) / dt_;
-      double &missing = missing_rate_[a][index(a, *cut)];
-      if (changes_frame(faces_, *cut)) rate -= rate_in_frame(domain_, faces_, *cut, a, {i, j, k}, time_, dt_, velocity);
-      if (fluid_.inertia && motion_of(cut->body).travels()) missing = curved_advection(a, *cut, j, k, velocity);
-      missing += (1 / cut->share - 1) * rate;
-    }
+  for_cut_faces(domain_, faces_, [&](int a, const RigidFaces::Cut &cut, int j, int k) {
+    const int i = cut.i;
+    double rate = (velocity_star[a](i, j, k) - velocity[a](i, j, k)) / dt_;
+    double &missing = missing_rate_[a][index(a, cut)];
+    if (changes_frame(faces_, cut)) rate -= rate_in_frame(domain_, faces_, cut, a, {i, j, k}, time_, dt_, velocity);
+    if (fluid_.inertia && motion_of(cut.body).travels()) missing = curved_advection(a, cut, j, k, velocity);
+    missing += (1 / cut.share - 1) * rate;
   });
 }
 
@@ -130,9 +123,9 @@ void RigidImpulse::add_increment(const Field &increment, bool partly) {
   for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
     const double *q = increment[0].row(j, k), factor = 1 / (fluid_.density * domain_.spacing()[a]);
     const std::ptrdiff_t step = increment[0].stride(a);
-    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (const int i = cut->i; owned(domain_, a, i))
-        missing_rate_[a][index(a, *cut)] -= (1 - cut->open) * factor * (q[i] - q[i - step]);
+    for (const RigidFaces::Cut &cut : row.cuts)
+      if (const int i = cut.i; owned(domain_, a, i))
+        missing_rate_[a][index(a, cut)] -= (1 - cut.open) * factor * (q[i] - q[i - step]);
   });
 }
 
@@ -189,10 +182,8 @@ PetscErrorCode RigidImpulse::sum(std::vector<double> *total) const {
     add(at.body, at.d, face_position(domain_, at.d, at.i, at.j, at.k),
         at.weight * pressure_[n] * domain_.cell_volume() / domain_.spacing()[at.d], &sums);
   }
-  for_rigid_rows(domain_, faces_, [&](int a, const RigidFaces::Row &row, int j, int k) {
-    for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
-      if (owned(domain_, a, cut->i)) add_cut(a, *cut, j, k, &sums);
-  });
+  for_cut_faces(domain_, faces_,
+                [&](int a, const RigidFaces::Cut &cut, int j, int k) { add_cut(a, cut, j, k, &sums); });
   const double mass = fluid_.density * domain_.cell_volume();
   std::size_t at = 0;
   for_moving_faces([&](int a, int i, int j, int k, int image) {

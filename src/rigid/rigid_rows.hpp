@@ -5,6 +5,7 @@
 #include "field/rigid_faces.hpp"
 #include "kernels/momentum.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -49,6 +50,8 @@ inline double regular_laplacian(const Box &box, const double *u, const Strides &
   return box.dimension() == 2 ? kernels::laplacian<2>(u, s[1], s[2], h) : kernels::laplacian<3>(u, s[1], s[2], h);
 }
 
+inline bool owned(const Box &box, int a, int i) { return i >= 0 && i < box.points_end(0, a == 0); }
+
 // Calls visit(component, row, j, k) for all owned rows in or beside a body; returns the number of cut faces in them.
 template <class Visit>
 double for_rigid_rows(const Box &box, const RigidFaces &faces, const Visit &visit) {
@@ -59,9 +62,25 @@ double for_rigid_rows(const Box &box, const RigidFaces &faces, const Visit &visi
         const RigidFaces::Row row = faces.row(a, j, k);
         if (row.empty()) continue;
         visit(a, row, j, k);
-        cut_faces += double(row.cuts_end - row.cuts);
+        cut_faces += double(row.cuts.size());
       }
   return cut_faces;
+}
+
+// Calls visit(component, cut, j, k) for all owned cut faces; returns their number.
+template <class Visit>
+double for_cut_faces(const Box &box, const RigidFaces &faces, const Visit &visit) {
+  return for_rigid_rows(box, faces, [&](int a, const RigidFaces::Row &row, int j, int k) {
+    for (const RigidFaces::Cut &cut : row.cuts)
+      if (owned(box, a, cut.i)) visit(a, cut, j, k);
+  });
+}
+
+// Calls visit(i, body) for the owned faces of component a inside bodies in a row.
+template <class Visit>
+void for_faces_inside(const Box &box, int a, const RigidFaces::Row &row, const Visit &visit) {
+  for (const RigidFaces::Run &run : row.runs)
+    for (int i = std::max(run.begin, 0); i < std::min(run.end, box.points_end(0, a == 0)); ++i) visit(i, run.body);
 }
 
 // -1 for a face on the low boundary normal to a, 1 on the high one, else 0.
@@ -89,8 +108,6 @@ inline double laplacian_of_sides(const Box &box, int a, int i, int j, int k, Con
   }
   return sum;
 }
-
-inline bool owned(const Box &box, int a, int i) { return i >= 0 && i < box.points_end(0, a == 0); }
 
 inline double viscous_rates_flops(int dimension) { return 12 + 10 * dimension; }
 

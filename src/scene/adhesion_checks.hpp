@@ -1,4 +1,4 @@
-// Whether bonds can be what the options ask for.
+// Validation of the options of adhesion.
 #pragma once
 
 #include "scene/config.hpp"

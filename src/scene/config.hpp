@@ -38,7 +38,7 @@ struct BoundaryControl {
   bool is_wall(int d, int high) const { return is(BoundaryKind::wall, d, high); }
 };
 
-/// What the options of one wall, inflow or pressure boundary say. `velocity`, `flow_rate` and `pressure` are a number
+/// Values of the options of one wall, inflow or pressure boundary. `velocity`, `flow_rate` and `pressure` are a number
 /// or the path of a table over time, as given; empty: not given.
 struct OpeningSpec {
   std::string profile = "uniform";  ///< uniform, developed, or a file

@@ -287,13 +287,13 @@ PetscErrorCode find_open_cells(const Config &config, const Domain &domain, const
     for (int i = faces.i_begin; i < faces.i_end; ++i) {
       double *cell = values({i, faces.j, faces.k});
       cell[0] = 1;
-      for (const RigidFaces::Run *run = row.runs; run != row.runs_end; ++run)
-        if (i >= run->begin && i < run->end) cell[0] = 0;
-      for (const RigidFaces::Cut *cut = row.cuts; cut != row.cuts_end; ++cut)
+      for (const RigidFaces::Run &run : row.runs)
+        if (i >= run.begin && i < run.end) cell[0] = 0;
+      for (const RigidFaces::Cut &cut : row.cuts)
         for (const int which : {0, 1})
           for (const bool up : {false, true})
-            if (const int link = 2 * (which == 0 ? plane.a : plane.b) + up; cut->i == i && (cut->walls >> link & 1U))
-              cell[1 + 2 * which + up] = cut->link[link];
+            if (const int link = 2 * (which == 0 ? plane.a : plane.b) + up; cut.i == i && (cut.walls >> link & 1U))
+              cell[1 + 2 * which + up] = cut.link[link];
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cells->all.data(), static_cast<int>(cells->all.size()), MPI_DOUBLE, MPI_SUM,

@@ -19,7 +19,7 @@
 namespace eulastic {
 namespace {
 
-// Work that a planned rank has. Of a body in a box the rank is its home, and whoever takes the body has the work.
+// Work of a planned rank. A body in a box counts for the rank that share_out() assigns it to.
 struct Work {
   int rank, number;
   bool in_box;
@@ -33,7 +33,8 @@ public:
         domain_(Domain::planned(config.grid, ranks)),
         first_(first_labels(config.species, config.places)) {}
 
-  /// What this rank knows of; rank 0 alone of walls, posts and what all ranks know.
+  /// Adds the work of the bodies known to this rank; with `on_rank_0` also that of walls, posts and bodies known to
+  /// all.
   void add_all(bool on_rank_0) {
     for (std::size_t s = 0; s < config_.species.size(); ++s) {
       const Places &places = config_.places[s];

@@ -16,12 +16,12 @@ struct VesselFlow {
   double apparent_viscosity = 0;  ///< dynamic, by Poiseuille's law from the driving pressure; 0 without flow
 };
 
-/// Those of all tubes, constricted ones too, whose axis lies in the box; `bulk`: mean velocity of the box; `sides`: as
-/// measured.
+/// Returns the flow in every tube, constricted or not, whose axis lies in the box. `bulk`: mean velocity in the box;
+/// `sides`: measured flows through the boundaries.
 std::vector<VesselFlow> vessel_flows(const Config &config, double time, const Real3 &bulk,
                                      const std::vector<SideFlow> &sides);
 
-/// Of all elastic bodies that bear loads, in the order of the bodies. Collective.
+/// Measures the loads of all elastic bodies that bear loads, in the order of the bodies. Collective.
 PetscErrorCode measure_vessel_loads(const Config &config, Solver *solver, std::vector<SurfaceLoad> *loads);
 
 }  // namespace eulastic

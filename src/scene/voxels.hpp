@@ -23,9 +23,9 @@ std::string read_cells(const VoxelSpec &voxels, const std::string &option, const
 std::string read_voxels(const SpeciesSpec &spec, const DomainShape &grid, const CellWindow &cells,
                         const VisitLayers &visit);
 
-/// Of all species of shape voxels: the volume of each in the box (0 for other shapes) in `volumes`, their sum in
-/// `solids`, and with `masks` their cells. Collective. Returns one line on the first that cannot be used, or nothing:
-/// one that has nothing solid in the box, or is rigid and fills all of it, cannot.
+/// Measures the species of shape voxels: `volumes` gets the volume of each in the box (0 for other shapes), `solids`
+/// its sum and, with `masks`, the cells. Returns an error of one line if a species has no solid in the box, or is rigid
+/// and fills all of it; else nothing. Collective.
 std::string measure_voxels(const std::vector<SpeciesSpec> &species, const DomainShape &grid, bool masks,
                            SolidBodies *solids, std::vector<double> *volumes);
 

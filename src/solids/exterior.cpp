@@ -44,7 +44,7 @@ bool is_surrounded(const double *phi, const std::ptrdiff_t *stride, int dimensio
 OccupiedRows::Span near_part(const Phase &phase, const PointBlock &extent, int j, int k) {
   const ActiveSegments &strained = phase.tensor.strained;
   if (j >= 0 && k >= 0 && j < strained.rows_y() && k < strained.rows_z()) {
-    const ActiveSegments::Range range = strained.row(j, k);
+    const Slice<Segment> range = strained.row(j, k);
     if (range.first == range.last) return {0, 0};
   }
   const OccupiedRows::Span span = phase.rows.span(j, k);

@@ -27,8 +27,7 @@ public:
   PetscErrorCode resume() override;
   PetscErrorCode rebuild_derived_fields(Phase *phase) override;
   PetscErrorCode move(double dt, std::vector<Phase> *phases) override;
-  /// Repairs B where the grid does not resolve it. `trace`: the largest tr B of every phase. Collective.
-  PetscErrorCode reset_unresolved(const std::vector<double> &trace);
+  PetscErrorCode reset_unresolved(const std::vector<double> &trace) override;
 
 private:
   PetscErrorCode transport_left_cauchy_green(Phase &phase, const ActiveSegments &before, double dt,

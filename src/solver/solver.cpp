@@ -145,7 +145,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
   State &now = flow_->now;
   const Domain &domain = flow_->domain;
   PetscFunctionBeginUser;
-  PetscCall(measure_extremes(domain, now.velocity, now.phases, extremes, boxed_->list()));
+  PetscCall(measure_extremes(domain, now.velocity, now.phases, extremes, boxed_->bodies().list()));
   for (int d = 0; rigid() && d < 3; ++d) extremes->speed[d] = std::max(extremes->speed[d], rigid()->speed[d]);
   now.speed_scale = std::max(extremes->max_speed(), wall_speed(flow_->spec.sides));
   for (const double speed : inflow_speed(flow_->spec.sides)) now.speed_scale = std::max(now.speed_scale, speed);
@@ -157,8 +157,7 @@ PetscErrorCode Solver::measure(FlowExtremes *extremes) {
 
 PetscErrorCode Solver::reset_unresolved(const FlowExtremes &extremes) {
   PetscFunctionBeginUser;
-  if (auto *grid = part<GridBodies>()) PetscCall(grid->reset_unresolved(extremes.trace));
-  PetscCall(boxed_->reset_unresolved(extremes.trace));
+  for (FlowPart *part : flow_->parts) PetscCall(part->reset_unresolved(extremes.trace));
   PetscFunctionReturn(0);
 }
 
@@ -167,7 +166,7 @@ PetscErrorCode Solver::step(double dt, const Observer &in_middle, const Observer
   const auto record_pressure = [&] {
     Flow &flow = *flow_;
     PetscFunctionBeginUser;
-    boxed_->forget_looks();
+    boxed_->discard_copies();
     if (!with_pressure) PetscFunctionReturn(0);
     flow.now.velocity.swap(flow.velocity_star);
     PetscCall(with_pressure());

@@ -36,30 +36,31 @@ PetscErrorCode SynchronisedState::phases(const std::vector<Phase> **phases) {
 }
 
 PetscErrorCode SynchronisedState::bodies(std::vector<BodyInBox> *bodies) {
-  return boxed_.look(flow_.phases_lag() && !half_step_behind_ ? 0.5 * flow_.now.dt - time_before_end_ : 0, bodies);
+  return boxed_.synchronise(flow_.phases_lag() && !half_step_behind_ ? 0.5 * flow_.now.dt - time_before_end_ : 0,
+                            bodies);
 }
 
 PetscErrorCode SynchronisedState::with_bodies_on_grid(
-    const std::function<PetscErrorCode(const std::vector<Phase> &)> &look) {
+    const std::function<PetscErrorCode(const std::vector<Phase> &)> &observe) {
   const std::vector<Phase> *measured = nullptr;
   std::vector<BodyInBox> boxed;
   PetscFunctionBeginUser;
   PetscCall(phases(&measured));
   PetscCall(bodies(&boxed));
   std::vector<Phase> &all = measured == &advanced_ ? advanced_ : flow_.now.phases;
-  PetscCall(boxed_.show_on_grid(boxed, &all, [&] { return look(all); }));
+  PetscCall(boxed_.with_bodies_on_grid(boxed, &all, [&] { return observe(all); }));
   PetscFunctionReturn(0);
 }
 
 // Labels and travelling rigid bodies are updated on a schedule of the run. For observers they are brought up to date in
 // copies, which are swapped in and out.
-PetscErrorCode SynchronisedState::at_half_step(const Observer &look) {
+PetscErrorCode SynchronisedState::at_half_step(const Observer &observe) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
   advanced_step_ = -1;
   advanced_.resize(now.phases.size());
   const auto swap = [this, &now] {
-    boxed_.forget_looks();
+    boxed_.discard_copies();
     for (std::size_t p = 0; p < advanced_.size(); ++p) {
       Phase &phase = now.phases[p], &copy = advanced_[p];
       if (phase.label) phase.label.swap(copy.label);
@@ -84,11 +85,11 @@ PetscErrorCode SynchronisedState::at_half_step(const Observer &look) {
   for (FlowPart *part : flow_.parts) PetscCall(part->position_phases(now.time, &now.phases));
   for (Phase &phase : now.phases)
     if (phase.label) PetscCall(label_new_cells(flow_.domain, flow_.exchange, &phase));
-  PetscCall(look());
+  PetscCall(observe());
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SynchronisedState::replay_last_step(const std::vector<double> &times, const Observer &look) {
+PetscErrorCode SynchronisedState::replay_last_step(const std::vector<double> &times, const Observer &observe) {
   State &now = flow_.now;
   PetscFunctionBeginUser;
   if (times.empty()) PetscFunctionReturn(0);
@@ -96,27 +97,27 @@ PetscErrorCode SynchronisedState::replay_last_step(const std::vector<double> &ti
   begin.copy_from(flow_.velocity_star);  // the projection has swapped the two
   end.copy_from(now.velocity);
   struct Restore {
-    SynchronisedState *looks;
+    SynchronisedState *of;
     const Field &velocity;
     double time;
     ~Restore() {
-      looks->flow_.now.velocity.copy_from(velocity);
-      looks->flow_.now.time = time;
-      looks->time_before_end_ = 0;
-      looks->advanced_step_ = -1;
-      looks->boxed_.forget_looks();
+      of->flow_.now.velocity.copy_from(velocity);
+      of->flow_.now.time = time;
+      of->time_before_end_ = 0;
+      of->advanced_step_ = -1;
+      of->boxed_.discard_copies();
     }
   } const restore{this, end, now.time};
   const std::ptrdiff_t values = end.count() * end.layout().size;
   for (const double time : times) {
     time_before_end_ = restore.time - time;
     advanced_step_ = -1;
-    boxed_.forget_looks();
+    boxed_.discard_copies();
     now.time = time;
     const double share = time_before_end_ / now.dt, *from = begin.data(), *to = end.data();
     double *velocity = now.velocity.data();
     for (std::ptrdiff_t i = 0; i < values; ++i) velocity[i] = to[i] + share * (from[i] - to[i]);
-    PetscCall(look());
+    PetscCall(observe());
   }
   PetscFunctionReturn(0);
 }

@@ -18,16 +18,16 @@ public:
   /// Bodies in boxes of this rank at the time of the velocity, with the velocity. Valid until the next step.
   /// Collective.
   PetscErrorCode bodies(std::vector<BodyInBox> *bodies);
-  /// Calls look(phases) while the phases of species whose bodies are in boxes hold these bodies on the grid: phi is the
-  /// sum, B and label are those of the body with the largest phi. Collective.
-  PetscErrorCode with_bodies_on_grid(const std::function<PetscErrorCode(const std::vector<Phase> &)> &look);
-  /// Calls look() with phases() and bodies() as stored, half a step behind the velocity. Requires phases half a step
+  /// Calls observe(phases) while the phases of species whose bodies are in boxes hold these bodies on the grid: phi is
+  /// the sum, B and label are those of the body with the largest phi. Collective.
+  PetscErrorCode with_bodies_on_grid(const std::function<PetscErrorCode(const std::vector<Phase> &)> &observe);
+  /// Calls observe() with phases() and bodies() as stored, half a step behind the velocity. Requires phases half a step
   /// behind.
-  PetscErrorCode at_half_step(const Observer &look);
-  /// Calls look() for each of `times` within the last step, with velocity and phases of that time to second order, and
-  /// the pressure of the step. The state is restored. Requires the staggered method; call after a step and before
+  PetscErrorCode at_half_step(const Observer &observe);
+  /// Calls observe() for each of `times` within the last step, with velocity and phases of that time to second order,
+  /// and the pressure of the step. The state is restored. Requires the staggered method; call after a step and before
   /// phases().
-  PetscErrorCode replay_last_step(const std::vector<double> &times, const Observer &look);
+  PetscErrorCode replay_last_step(const std::vector<double> &times, const Observer &observe);
   std::size_t bytes() const;
 
 private:

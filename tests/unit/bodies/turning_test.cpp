@@ -67,15 +67,15 @@ TEST(TurningBodies, PlaceIsAFunctionOfTime) {
         const auto place = [&](int i) {
           return Real3{position(domain, 0, a == 0, i), position(domain, 1, a == 1, j), position(domain, 2, a == 2, k)};
         };
-        for (const auto *run = row.runs; run != row.runs_end; ++run)
-          for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.cells()[0]); ++i)
+        for (const RigidFaces::Run &run : row.runs)
+          for (int i = std::max(run.begin, 0); i < std::min(run.end, domain.cells()[0]); ++i)
             EXPECT_LT(level(place(i)), 0);
-        for (const auto *cut = row.cuts; cut != row.cuts_end; ++cut)
+        for (const RigidFaces::Cut &cut : row.cuts)
           for (int link = 0; link < 6; ++link) {
-            if (!(cut->walls >> link & 1U) || cut->i < 0 || cut->i >= domain.cells()[0]) continue;
+            if (!(cut.walls >> link & 1U) || cut.i < 0 || cut.i >= domain.cells()[0]) continue;
             const int d = link / 2;
-            Real3 end = place(cut->i);
-            end[d] += (link % 2 ? 1 : -1) / (cut->link[link] * domain.spacing()[d]);
+            Real3 end = place(cut.i);
+            end[d] += (link % 2 ? 1 : -1) / (cut.link[link] * domain.spacing()[d]);
             EXPECT_NEAR(level(end), 0, 4e-4);  // no link is shorter than a thousandth of a cell
             ++links;
           }

@@ -56,30 +56,30 @@ TEST(RigidFaces, LinksEndAtTheSurface) {
       for (int j = -2; j < domain.cells()[1] + 2; ++j) {
         const RigidFaces::Row row = faces->row(a, j, k);
         std::vector<char> inside(domain.cells()[0]);
-        for (const auto *run = row.runs; run != row.runs_end; ++run)
-          for (int i = std::max(run->begin, 0); i < std::min(run->end, domain.cells()[0]); ++i) inside[i] = 1;
+        for (const RigidFaces::Run &run : row.runs)
+          for (int i = std::max(run.begin, 0); i < std::min(run.end, domain.cells()[0]); ++i) inside[i] = 1;
         const auto place = [&](int i) {
           return Real3{position(domain, 0, a == 0, i), position(domain, 1, a == 1, j), position(domain, 2, a == 2, k)};
         };
         for (int i = 0; i < domain.cells()[0]; ++i) EXPECT_EQ(inside[i] != 0, distance(place(i)) < 0);
-        for (const auto *cut = row.cuts; cut != row.cuts_end; ++cut) {
-          EXPECT_GT(distance(place(cut->i)), 0);
+        for (const RigidFaces::Cut &cut : row.cuts) {
+          EXPECT_GT(distance(place(cut.i)), 0);
           double diagonal = 0;
           for (int link = 0; link < 6; ++link) {
             const int d = link / 2;
             const double h = domain.spacing()[d];
-            diagonal += cut->link[link];
-            if (!(cut->walls >> link & 1U)) {
-              EXPECT_EQ(cut->link[link], 1 / (h * h));
+            diagonal += cut.link[link];
+            if (!(cut.walls >> link & 1U)) {
+              EXPECT_EQ(cut.link[link], 1 / (h * h));
               continue;
             }
-            Real3 end = place(cut->i);
-            end[d] += (link % 2 ? 1 : -1) / (cut->link[link] * h);
+            Real3 end = place(cut.i);
+            end[d] += (link % 2 ? 1 : -1) / (cut.link[link] * h);
             EXPECT_NEAR(distance(end), 0, 1.01e-3 * h);  // no link is shorter than that
             ++links;
           }
-          EXPECT_NE(cut->walls, 0u);
-          EXPECT_LE(cut->share * diagonal, regular * (1 + 1e-14));
+          EXPECT_NE(cut.walls, 0u);
+          EXPECT_LE(cut.share * diagonal, regular * (1 + 1e-14));
         }
       }
   EXPECT_GT(links, 300);
@@ -96,12 +96,12 @@ TEST(RigidFaces, SurfaceOfAFile) {
     return std::min(1.0, std::max(0.0, (x - 0.3) * 8));  // 1/2 at x = .3625: a slope of phi one cell wide
   });
   const RigidFaces::Row row = faces->row(0, 2, 0);
-  ASSERT_NE(row.cuts, row.cuts_end);
+  ASSERT_FALSE(row.cuts.empty());
   bool found = false;
-  for (const auto *cut = row.cuts; cut != row.cuts_end; ++cut)
-    if (cut->i == 2) {
-      EXPECT_EQ(cut->walls, 2u);
-      EXPECT_NEAR(0.25 + 1 / (cut->link[1] * 0.125), 0.3625, 0.02);
+  for (const RigidFaces::Cut &cut : row.cuts)
+    if (cut.i == 2) {
+      EXPECT_EQ(cut.walls, 2u);
+      EXPECT_NEAR(0.25 + 1 / (cut.link[1] * 0.125), 0.3625, 0.02);
       found = true;
     }
   EXPECT_TRUE(found);
@@ -167,11 +167,11 @@ TEST(TravellingBodies, PlaceIsAFunctionOfTime) {
   for (int a = 0; a < 2; ++a)
     for (int j = -2; j < 16; ++j) {
       const RigidFaces::Row one = bodies[0]->faces().row(a, j, 0), two = bodies[1]->faces().row(a, j, 0);
-      ASSERT_EQ(one.cuts_end - one.cuts, two.cuts_end - two.cuts);
-      ASSERT_EQ(one.runs_end - one.runs, two.runs_end - two.runs);
-      for (std::ptrdiff_t c = 0; c < one.cuts_end - one.cuts; ++c, ++cuts)
+      ASSERT_EQ(one.cuts.size(), two.cuts.size());
+      ASSERT_EQ(one.runs.size(), two.runs.size());
+      for (std::size_t c = 0; c < one.cuts.size(); ++c, ++cuts)
         for (int link = 0; link < 4; ++link) EXPECT_EQ(one.cuts[c].link[link], two.cuts[c].link[link]);
-      for (std::ptrdiff_t r = 0; r < one.runs_end - one.runs; ++r, ++runs) {
+      for (std::size_t r = 0; r < one.runs.size(); ++r, ++runs) {
         EXPECT_EQ(one.runs[r].begin, two.runs[r].begin);
         EXPECT_EQ(one.runs[r].end, two.runs[r].end);
       }
