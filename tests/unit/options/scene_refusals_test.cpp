@@ -189,6 +189,18 @@ TEST(SceneRefusals, SlabsThatCutOffAnInlet) {
   expect_refusals({{"-boundary_y wall", {"-s_interval: the rigid slab cuts", "xmin", "accepted: "}}}, slab);
 }
 
+TEST(SceneRefusals, BodiesWithoutAFace) {
+  const std::string body = "-time_end 1 -grid_cells 16,16,16 -species s -s_law rigid ";
+  EXPECT_EQ(parse_line(body + "-s_shape sphere -s_radius .005 -s_centre .5,.53125,.53125").error, "");  // on a face
+  EXPECT_EQ(parse_line(body + "-s_shape sphere -s_radius .0625 -s_centre .51,.52,.53").error, "");
+  expect_refusals(
+      {{"-s_shape sphere -s_radius .005 -s_centre .51,.52,.53",
+        {"-s_radius: the rigid body at 0.51,0.52,0.53 contains no face", "accepted: bodies at least 0.125 thick"}},
+       {"-s_shape ellipsoid -s_semi_axes .2,.2,.01 -s_centre .5,.5,.515", {"-s_semi_axes: the rigid body at"}},
+       {"-s_shape cylinder -s_axis z -s_radius .01 -s_centre .51,.51,.5", {"-s_radius: the rigid body at 0.51,0.51"}}},
+      body);
+}
+
 // Only rigid vessels may have open ends.
 TEST(SceneRefusals, ElasticVesselsAtOpenBoundaries) {
   const std::string open =
