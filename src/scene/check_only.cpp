@@ -183,28 +183,37 @@ public:
   }
 
 private:
-  /// From user times of short runs on one core of 2024 (AVX-512): options/channel_rbc.opts, its plasma alone, and
-  /// options/capillary_h20.opts at two time steps, reproduced within 15 %; with a viscosity contrast of
-  /// options/channel_red_cells.opts. `viscous`: time step over the viscous limit.
+  struct StepCost {
+    double per_cell, fixed;  ///< in ns per cell, and in us
+  };
+  /// In 3-D from user times of short runs on one core of 2024 (AVX-512): options/channel_rbc.opts, its plasma alone,
+  /// and options/capillary_h20.opts at two time steps, reproduced within 15 %; with a viscosity contrast of
+  /// options/channel_red_cells.opts. In 2-D, and for the fixed part, from runs of the validation on one rank, of 128 to
+  /// 131072 cells, mostly within 50 %: fewer directions and components, and fields that fit into the cache. Crowds in
+  /// 2-D take up to four times as long. `viscous`: time step over the viscous limit.
+  StepCost step_cost(double viscous, bool contrast) const {
+    const double phases = double(config_.species.size());
+    const bool flat = dimension_ == 2;
+    if (config_.method.explicit_viscosity()) return {flat ? 10 + 6 * phases : 45 + 85 * phases, 10 + 10 * phases};
+    const double stages = rkl_stages(viscous, 1);
+    if (config_.method.implicit_viscosity(contrast, has_rigid_bodies())) return {1700 + 250 * phases, 500};
+    if (flat) return {15 + stages + 25 * phases, 20 + 3 * stages + 80 * phases};
+    const double of_contrast = contrast ? 40 + 6 * stages : 0, of_phases = phases > 0 ? 10 * stages + 250 * phases : 0;
+    return {70 + 8 * stages + of_phases + of_contrast, 20 + 3 * stages + 80 * phases};
+  }
   void wall_time(Report &report, double steps, double viscous, int ranks, bool contrast) const {
     const Int3 &n = config_.grid.cells;
-    const double phases = double(config_.species.size());
-    double ns = 45 + 85 * phases;
-    if (!config_.method.explicit_viscosity()) {
-      const double stages = rkl_stages(viscous, 1);
-      ns = 70 + 8 * stages + (phases > 0 ? 10 * stages : 0) + 250 * phases;
-      if (contrast) ns += 40 + 6 * stages;
-      if (config_.method.implicit_viscosity(contrast, has_rigid_bodies())) ns = 1700 + 250 * phases;
-    }
+    const double cells = double(n[0]) * n[1] * n[2];
+    const StepCost cost = step_cost(viscous, contrast);
     const int cores = ranks * config_.threads;
-    const double seconds = 1e-9 * ns * n[0] * n[1] * n[2] * steps / cores;
+    const double of_step = 1e-9 * cost.per_cell * cells / cores + 1e-6 * cost.fixed, seconds = of_step * steps;
     const char *unit = "seconds";
     double time = seconds;
     if (seconds >= 100) time = seconds / 60, unit = "minutes";
     if (seconds >= 6000) time = seconds / 3600, unit = "hours";
     if (seconds >= 360000) time = seconds / 86400, unit = "days";
     report.line("wall time (estimate)", print("%.3g %s on %d core%s, %.2g us per cell, step and core", time, unit,
-                                              cores, cores > 1 ? "s" : "", 1e-3 * ns));
+                                              cores, cores > 1 ? "s" : "", 1e6 * of_step * cores / cells));
   }
   bool has_rigid_bodies() const {
     return std::any_of(config_.species.begin(), config_.species.end(),

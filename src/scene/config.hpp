@@ -64,6 +64,9 @@ struct OpenPart {
   int lumens = 0;    ///< 0 also where bodies come from -initial_state
   double width = 0;  ///< of the widest lumen; infinite where no wall is
   double cells = 0;  ///< across the narrowest one
+  /// Bits 1 << (2 d + high) of this and of the other inflow and open boundaries to which rigid bodies leave a way; 0 if
+  /// no other exists, or no rigid body.
+  unsigned connected = 0;
 };
 
 struct TimeControl {

@@ -100,6 +100,10 @@ std::vector<std::string> lumen_warnings(const Config &config) {
     const std::string side = "-boundary_" + side_name(d, high) + ": ";
     if (part.lumens == 0 && part.share < 1)
       warnings.push_back(side + "rigid bodies cover all of this open boundary, so that nothing passes it");
+    if (part.lumens > 0 && part.connected == 1U << (2 * d + high))
+      warnings.push_back(side +
+                         "rigid bodies cut this boundary off from all others that fluid can cross, so that no "
+                         "flow from them reaches it");
     if (part.lumens > 0 && part.cells < least_cells * (1 - round_off))
       warnings.push_back(
           side + "only " + number(part.cells, 3) +

@@ -4,6 +4,7 @@
 #include "bodies/volume_fraction.hpp"
 #include "io/option_values.hpp"
 #include "openings/leaving.hpp"
+#include "scene/flow_paths.hpp"
 #include "scene/voxels.hpp"
 
 #include <algorithm>
@@ -180,20 +181,6 @@ bool is_too_thin(const Config &config, const SpeciesSpec &slab) {
   return std::floor(low + on_surface) + 1 >= high - on_surface;
 }
 
-// A slab across the box must not cut off an inlet at one of its ends, unless boundaries beside the slab are open.
-std::string check_cut_off(const Config &config, const SpeciesSpec &slab) {
-  bool beside = config.grid.boundary[slab.axis] == Boundary::periodic;
-  std::string inlet;
-  for_crossed_sides(config, [&](int d, int high) {
-    beside = beside || d != slab.axis;
-    if (config.sides[d][high].kind == BoundaryKind::inflow) inlet = side_name(d, high != 0);
-  });
-  if (beside || inlet.empty()) return {};
-  return "-" + slab.name + "_interval: the rigid slab cuts the inflow boundary " + inlet +
-         " off from all boundaries through which the inflow could leave; accepted: bodies that leave a way for the "
-         "fluid";
-}
-
 std::string check_slabs(const Config &config) {
   for (const SpeciesSpec &spec : config.species) {
     const double length = config.grid.length[spec.axis];
@@ -208,13 +195,6 @@ std::string check_slabs(const Config &config) {
              to_text(config.grid.spacing(spec.axis)) + " long, one cell, with a multiple of it inside";
   }
   return {};
-}
-
-std::string check_cuts(const Config &config) {
-  std::string wrong;
-  for (const SpeciesSpec &spec : config.species)
-    if (wrong.empty() && spec.law == Law::rigid && spec.shape == Shape::slab) wrong = check_cut_off(config, spec);
-  return wrong;
 }
 
 // Inflow must be able to leave.
@@ -245,6 +225,32 @@ std::string check_way(const Config &config, const std::array<std::array<bool, 2>
     return "-boundary_" + outlet +
            ": rigid bodies cover all boundaries through which the inflow could leave; accepted: an open boundary";
   return {};
+}
+
+// Rigid bodies inside the box must leave a way to an open boundary. Without one, inlets that they leave connected may
+// still balance each other.
+std::string check_cut_off(const Config &config) {
+  std::string wrong;
+  for_crossed_sides(config, [&](int d, int high) {
+    const unsigned connected = config.open_parts[d][high].connected;
+    if (config.sides[d][high].kind != BoundaryKind::inflow || connected == 0 || !wrong.empty()) return;
+    int inlets = 0;
+    bool outlet = false, in = false, out = false;
+    for_crossed_sides(config, [&](int e, int end) {
+      if (!(connected >> (2 * e + end) & 1)) return;
+      const auto range = config.sides[e][end].given.range();
+      const bool inlet = config.sides[e][end].kind == BoundaryKind::inflow;
+      inlets += inlet;
+      outlet = outlet || !inlet;
+      in = in || (inlet && range[1] > 0);
+      out = out || (inlet && range[0] < 0);
+    });
+    if (outlet || (!in && !out) || (inlets > 1 && in && out)) return;
+    wrong = "-boundary_" + side_name(d, high) +
+            ": rigid bodies cut this inflow boundary off from all boundaries through which the inflow could leave; "
+            "accepted: bodies that leave a way for the fluid";
+  });
+  return wrong;
 }
 
 // Solid that is not rigid may not begin beside a boundary that fluid crosses: a run would stop there at once. Bodies
@@ -285,7 +291,8 @@ std::string measure_open_parts(Config *config) {
     closed[d][high] = is_closed(*config, cells, d, high);
   });
   if (wrong.empty()) wrong = check_way(*config, closed);
-  return wrong.empty() ? check_cuts(*config) : wrong;
+  if (wrong.empty()) wrong = find_connected_boundaries(config);
+  return wrong.empty() ? check_cut_off(*config) : wrong;
 }
 
 }  // namespace eulastic

@@ -8,7 +8,7 @@
 namespace eulastic {
 
 /// Measures Config::open_parts. Returns an error of one line, or nothing; errors are a rigid slab that fills the box, a
-/// closed inflow boundary, and an inflow that cannot leave the box. Collective.
+/// closed inflow boundary, and an inflow that cannot leave the box or that rigid bodies cut off. Collective.
 std::string measure_open_parts(Config *config);
 
 /// Calls visit(d, high) for every inflow or open boundary.

@@ -9,6 +9,7 @@
 #include "openings/leaving.hpp"
 #include "pressure/smac.hpp"
 #include "scene/adhesion_checks.hpp"
+#include "scene/closed_faces.hpp"
 #include "scene/open_parts.hpp"
 #include "scene/rigid_paths.hpp"
 #include "scene/voxels.hpp"
@@ -358,6 +359,7 @@ std::string validate(Config *whole) {
       !wrong.empty())
     return wrong;
   if (const std::string wrong = place_all(solids, whole); !wrong.empty()) return wrong;
+  if (const std::string wrong = check_small_bodies(config); !wrong.empty()) return wrong;
   if (const std::string wrong = measure_open_parts(whole); !wrong.empty()) return wrong;
   if (const std::string wrong = check_adhesion(whole); !wrong.empty()) return wrong;
   return check_paths(config);

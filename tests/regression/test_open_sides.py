@@ -240,6 +240,28 @@ class OpenSides(SceneCase):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("-boundary_xmin: rigid bodies cover all of this", done.stderr)
 
+    def test_ways_out_of_an_inlet(self):
+        """Through voxels, across the seam in z, and on any ranks: as far as faces are open. Pressures alone are warned of."""
+        wall = numpy.zeros((8, 12, 12), "u1")
+        wall[:, :, 4:8] = 1  # across the box
+        wall[0, :, 4:6] = wall[7, :, 5:8] = 0  # two halves of a way, which meet across the seam
+        shut = wall.copy()
+        shut[0, :, 4:6] = shut[7, :, 5] = 1  # two cells: a face is closed if more than half of both its cells is solid
+        plan = Plan(self.room)
+        for name, values in (("wall", wall), ("shut", shut)):
+            with h5py.File(self.room / f"{name}.h5", "w") as file:
+                file["wall"] = values
+            scene = ("-grid_cells 12,12,8 -boundary_x wall -boundary_y wall -boundary_xmax outflow -time_end 1 -species pipe "
+                     f"-pipe_law rigid -pipe_shape voxels -pipe_voxels {self.room}/{name}.h5 -boundary_xmin").split()
+            for ranks in (1, 3):
+                plan.add(f"inflow_{name}_{ranks}", *scene, "inflow", "-boundary_xmin_velocity", "1", "-check_only", ranks=ranks, output=False)
+                plan.add(f"pressure_{name}_{ranks}", *scene, "pressure", "-check_only", ranks=ranks, output=False)
+        for name, outcome in plan.execute().items():
+            error = "-boundary_xmin: rigid bodies cut this inflow boundary off from all boundaries through which"
+            warning = "warning: -boundary_xmin: rigid bodies cut this boundary off from all others"
+            self.assertEqual((outcome.code, error in outcome.err, warning in outcome.out),
+                             (2 * ("inflow_shut" in name), "inflow_shut" in name, "pressure_shut" in name), (name, outcome.out, outcome.err))
+
     def test_profile_from_hdf5(self):
         """As the same numbers from a text, on each side that has other directions; vectors point into the box or out of it."""
         numbers = numpy.random.default_rng(1).uniform(.5, 1.5, (14, 12))

@@ -213,10 +213,15 @@ class Package(WithRoom):
         done = subprocess.run(["/usr/bin/python3", "-B", "-c", "import sys\n" + program, CASE], cwd=self.room, env=environment,
                               capture_output=True, text=True)
         self.assertEqual(done.stdout.split(), [str(self.room / "site/eulastic/__init__.py"), "2"], done.stderr)
+        by_name = program.replace("'out'", "'by_name'")  # the cases are those of the clone in which EULASTIC was built
+        done = subprocess.run(["/usr/bin/python3", "-B", "-c", "import sys\n" + by_name, pathlib.Path(CASE).stem], cwd=self.room,
+                              env=environment, capture_output=True, text=True)
+        self.assertEqual(done.stdout.split()[1:], ["2"], done.stderr)
         script = self.room / "site/eulastic/shell/run"
         for name, value, said in (("EULASTIC", None, "the program eulastic is missing; accepted: its path in EULASTIC, or its folder on PATH"),
                                   ("EULASTIC", "/nosuch", "EULASTIC: /nosuch is missing or no program; accepted: the path of the program eulastic"),
-                                  ("OTHER", "", "there is no case nosuch; accepted: a file of options")):
+                                  ("OTHER", "", "there is no case nosuch; accepted: a file of options, "
+                                   f"or the name of one in {ROOT}/options")):
             changed = {**environment, "PATH": "/usr/bin:/bin", name: value}
             done = subprocess.run(["bash", script, "nosuch", "out"], cwd=self.room, capture_output=True, text=True,
                                   env={name: text for name, text in changed.items() if text is not None})

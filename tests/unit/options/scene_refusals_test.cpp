@@ -181,12 +181,41 @@ TEST(SceneRefusals, RigidBodiesThatTurnInPlace) {
                   "-time_end 1 -grid_cells 20,20,1 -a_law rigid ");
 }
 
-TEST(SceneRefusals, SlabsThatCutOffAnInlet) {
+TEST(SceneRefusals, BodiesThatCutOffAnInlet) {
+  const std::string says = "-boundary_xmin: rigid bodies cut this inflow boundary off";
   const std::string slab =
       "-time_end 1 -grid_cells 24,16,1 -boundary_xmin inflow -boundary_xmin_velocity 1 -boundary_xmax pressure "
       "-species s -s_shape slab -s_axis x -s_interval .3,.6 -s_law rigid ";
   EXPECT_EQ(parse_line(slab + "-boundary_ymin wall -boundary_ymax pressure").error, "");
-  expect_refusals({{"-boundary_y wall", {"-s_interval: the rigid slab cuts", "xmin", "accepted: "}}}, slab);
+  expect_refusals({{"-boundary_y wall", {says, "accepted: "}}}, slab);
+  // A disc in a channel leaves a way of one face on either side, or none.
+  const std::string channel =
+      "-time_end 1 -grid_cells 48,16,1 -grid_length 3,1,1 -boundary_xmin inflow -species s -s_shape cylinder -s_axis z "
+      "-s_law rigid ";
+  const std::string disc = channel + "-boundary_y wall -boundary_xmax outflow ", flow = "-boundary_xmin_velocity 1 ";
+  EXPECT_EQ(parse_line(disc + flow + "-s_radius .45").error, "");
+  EXPECT_EQ(parse_line(disc + "-boundary_xmin_velocity 0 -s_radius .48").error, "");
+  expect_refusals({{"-s_radius .48", {says}}, {"-s_radius .24 -s_placement lattice -s_count 1,2,1", {says}}},
+                  disc + flow);
+  // Across the periodic boundary in y the way is open only where the disc has a gap to its image.
+  EXPECT_EQ(parse_line(channel + flow + "-boundary_xmax outflow -s_radius .45 -s_centre 1.5,.25,.5").error, "");
+  expect_refusals({{"-s_radius .499 -s_centre 1.5,.25,.5", {says}}}, channel + flow + "-boundary_xmax outflow ");
+  // What flows in may leave through another inlet.
+  const std::string two = channel + flow + "-boundary_y wall -boundary_xmax inflow -boundary_xmax_velocity -1 ";
+  EXPECT_EQ(parse_line(two + "-s_radius .45").error, "");
+  expect_refusals({{"-s_radius .48", {says}}}, two);
+}
+
+TEST(SceneRefusals, BodiesWithoutAFace) {
+  const std::string body = "-time_end 1 -grid_cells 16,16,16 -species s -s_law rigid ";
+  EXPECT_EQ(parse_line(body + "-s_shape sphere -s_radius .005 -s_centre .5,.53125,.53125").error, "");  // on a face
+  EXPECT_EQ(parse_line(body + "-s_shape sphere -s_radius .0625 -s_centre .51,.52,.53").error, "");
+  expect_refusals(
+      {{"-s_shape sphere -s_radius .005 -s_centre .51,.52,.53",
+        {"-s_radius: the rigid body at 0.51,0.52,0.53 contains no face", "accepted: bodies at least 0.125 thick"}},
+       {"-s_shape ellipsoid -s_semi_axes .2,.2,.01 -s_centre .5,.5,.515", {"-s_semi_axes: the rigid body at"}},
+       {"-s_shape cylinder -s_axis z -s_radius .01 -s_centre .51,.51,.5", {"-s_radius: the rigid body at 0.51,0.51"}}},
+      body);
 }
 
 // Only rigid vessels may have open ends.
