@@ -14,8 +14,9 @@
 namespace eulastic {
 namespace {
 
-constexpr double relaxation_per_strain = 3;  // (23), where viscosity damps short waves
-constexpr double least_determinant = 0.75;   // below it, (23) is skipped
+constexpr double relaxation_per_strain = 3;      // (23), where viscosity damps short waves
+constexpr double relaxation_per_passage = 0.01;  // (23), where it does not: while a wave passes a cell
+constexpr double least_determinant = 0.75;       // below it, (23) is skipped
 
 // Input of a chunk of points: fields of the phase, measures at centres, and the coefficients of (21) and (23).
 struct Terms {
@@ -23,7 +24,8 @@ struct Terms {
   const double *B[6], *phi, *gradient[3], *rate;
   double G, stiffening;
   double mu, excess_viscosity, wave_term;  // 1/k = (mu + excess_viscosity (1 - phi))/G + wave_term/sqrt(G)
-  double traction_factor, relaxation;      // dt times the factors of k in (22) and of a in (23)
+  double traction_factor;                  // dt times the factor of k in (22)
+  double relaxation, least_relaxation;     // (23): a is relaxation times the strain rate, plus least_relaxation
 
   Terms(const Box &box, const SurfaceStep &step, const Phase &phase, const Field &measured) {
     const int dimension = box.dimension();
@@ -46,7 +48,9 @@ struct Terms {
     excess_viscosity = phase.tensor.rule.viscosity_excess * mu;
     wave_term = 0.0625 * shortest * std::sqrt(rho);
     traction_factor = step.dt * (mu > across ? across / mu : 1);
-    relaxation = relaxation_per_strain * step.dt * (mu < across ? mu / across : mu > 0 ? 1 : 0);
+    const double damped = mu < across ? mu / across : 1;
+    relaxation = relaxation_per_strain * step.dt * damped;
+    least_relaxation = relaxation_per_passage * step.dt * (1 - damped) * across / (rho * shortest * shortest);
   }
 };
 
@@ -122,7 +126,7 @@ EULASTIC_INLINE void correct_chunk(const Terms &terms, Chunk *chunk) {
     const double limited = kernels::fma(t.wave_term, __builtin_sqrt(G > 0 ? G : 0), mu), k = G > 0 ? G / limited : 0;
     const kernels::SymmetricTensor corrected =
         kernels::relax_traction(T, kernels::unit(gradient), missing * t.traction_factor * k);
-    const double keep = kernels::decay(t.relaxation * centred_at<A, B>(t, t.rate + p));
+    const double keep = kernels::decay(kernels::fma(t.relaxation, centred_at<A, B>(t, t.rate + p), t.least_relaxation));
     const auto relax = [=](bool is_located, double now, double mean)
                            EULASTIC_BODY { return is_located ? kernels::fma(keep, now, (1 - keep) * mean) : now; };
     const double mean[3] = {c.mean[0][n], A == B ? c.mean[1][n] : 0, A == B && Dim == 3 ? c.mean[2][n] : 0};
@@ -292,7 +296,7 @@ void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const P
       for (int f = 0; f < components; ++f) inside.field[f] = terms.B[first + f] + p;
       return inside.template mean<Dim>(chunk.mean, chunk.count);
     };
-    chunk.has_mean[chunk.count] = terms.relaxation > 0 && (centre ? compute_mean(centres) : compute_mean(edges));
+    chunk.has_mean[chunk.count] = centre ? compute_mean(centres) : compute_mean(edges);
     if (++chunk.count == Chunk::most) work();
   }
   work();

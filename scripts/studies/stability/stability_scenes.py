@@ -253,7 +253,7 @@ GROUPS = [
     Group("reversing", "walls that reverse", reversing, [0.1, 1, 10, 100, 1000], [0.01, 1, 100], "ω L/U", "G/(ρU²)",
           [(10, 1), (1000, 100)]),
     Group("stretched", "a released stretched ellipse", stretched, [1.5, 2, 3, 4, 5], MODULI[1:], "stretch", "G (ρ = L = 1, μ = 0.01)",
-          [(3, 1), (5, 100)]),
+          [(1.5, 100), (3, 1), (5, 100)]),
     Group("layers", "shear layers too thin for the grid", layers, [0, 1e-6, 1e-5, 1e-4, 1e-3],
           [16, 32, 64, "32 disc", "64 disc"], "viscosity/(ρUL)", "cells", [(0, "32 disc"), (1e-5, 32)]),
     Group("nothing", "zero motion, modulus, force, viscosity", nothing, NOTHINGS, [0, 1, 1000], "", "G",
