@@ -120,10 +120,11 @@ class Unresolved(unittest.TestCase):
         self.assertLess(end["elastic_energy"], 8)  # 16.4 without
 
     def test_a_free_disc_that_turns_on_and_on(self):
-        """Between shearing walls the means of every turn add up: det B of a disc of 6 cells is 6.4 at t = 200 without this."""
+        """Between shearing walls the means of every turn add up, and det B of a disc of 6 cells would grow to 6.4. As B at the surface
+        relaxes towards that of the interior also where viscosity does not damp short waves, nothing has to be reset."""
         end, _ = self.run_scene("-method", "fast", *SHEAR, *COARSE, "-a_shear_modulus", "1", "-time_end", "200",
                                 "-snapshot_interval", "10", "-snapshot_fields", "solid_fraction,left_cauchy_green")
-        self.assertGreater(end["strain_forgotten"], 0)
+        self.assertEqual(end["strain_forgotten"], 0)
         for snapshot in Run(self.room / "run").snapshots:
             phi, trace, determinant = fields_of_b(snapshot, "a")
             full = phi > 0.999
