@@ -25,6 +25,7 @@ struct Terms {
   double G, stiffening;
   double mu, excess_viscosity, wave_term;  // 1/k = (mu + excess_viscosity (1 - phi))/G + wave_term/sqrt(G)
   double traction_factor;                  // dt times the factor of k in (22)
+  double damped;                           // r of (23)
   double relaxation, least_relaxation;     // (23): a is relaxation times the strain rate, plus least_relaxation
 
   Terms(const Box &box, const SurfaceStep &step, const Phase &phase, const Field &measured) {
@@ -48,7 +49,7 @@ struct Terms {
     excess_viscosity = phase.tensor.rule.viscosity_excess * mu;
     wave_term = 0.0625 * shortest * std::sqrt(rho);
     traction_factor = step.dt * (mu > across ? across / mu : 1);
-    const double damped = mu < across ? mu / across : 1;
+    damped = mu < across ? mu / across : 1;
     relaxation = relaxation_per_strain * step.dt * damped;
     least_relaxation = relaxation_per_passage * step.dt * (1 - damped) * across / (rho * shortest * shortest);
   }
@@ -186,6 +187,7 @@ struct FullPoints {
   const unsigned char *kind;
   const double *field[Fields];
   std::ptrdiff_t stride[3];
+  double slope;  // by which slopes are multiplied
   static constexpr auto full = SurfaceCorrection::full;
 
   // Adds `Away` times the minmod slope behind full point o; none if the slope would need points beyond the ghosts.
@@ -195,7 +197,7 @@ struct FullPoints {
       if (kind[o + in] != full || kind[o + 2 * in] != full) return;
       for (int f = 0; f < Fields; ++f) {
         const double *q = field[f] + o;
-        one.value[f] += Away * kernels::minmod(q[0] - q[in], q[in] - q[2 * in]);
+        one.value[f] += Away * slope * kernels::minmod(q[0] - q[in], q[in] - q[2 * in]);
       }
     }
   }
@@ -268,8 +270,8 @@ void SurfaceCorrection::correct(const Box &box, const SurfaceStep &step, const P
     }
     around[l][3] = around[l][1] + around[l][2];
   }
-  FullPoints<Dim> centres{nullptr, {}, {terms.stride[0], terms.stride[1], terms.stride[2]}};
-  FullPoints<1> edges{nullptr, {}, {terms.stride[0], terms.stride[1], terms.stride[2]}};
+  FullPoints<Dim> centres{nullptr, {}, {terms.stride[0], terms.stride[1], terms.stride[2]}, terms.damped};
+  FullPoints<1> edges{nullptr, {}, {terms.stride[0], terms.stride[1], terms.stride[2]}, terms.damped};
   Chunk chunk;
   std::size_t done = piece.begin;
   const auto work = [&] {
