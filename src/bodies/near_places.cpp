@@ -46,8 +46,8 @@ std::vector<int> ranks_near(const Domain &domain, const Surface &surface, const 
   return ranks;
 }
 
-PetscErrorCode bring_near(MPI_Comm comm, const Domain &domain, const SpeciesSpec &spec, const Places &places,
-                          Places *here) {
+PetscErrorCode send_to_near_ranks(MPI_Comm comm, const Domain &domain, const SpeciesSpec &spec, const Places &places,
+                                  Places *here) {
   int rank;
   std::vector<int> ranks;
   PetscFunctionBeginUser;

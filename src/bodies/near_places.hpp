@@ -14,7 +14,7 @@ bool is_near(const Domain &domain, int rank, const Surface &surface, const BodyP
 std::vector<int> ranks_near(const Domain &domain, const Surface &surface, const BodyPlace &place);
 /// Sends the bodies of a species to the ranks of `comm` that they are near; `here` gets those of this rank, in order.
 /// `domain` need not be allocated: it may be planned only. Collective.
-PetscErrorCode bring_near(MPI_Comm comm, const Domain &domain, const SpeciesSpec &spec, const Places &places,
-                          Places *here);
+PetscErrorCode send_to_near_ranks(MPI_Comm comm, const Domain &domain, const SpeciesSpec &spec, const Places &places,
+                                  Places *here);
 
 }  // namespace eulastic

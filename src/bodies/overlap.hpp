@@ -27,7 +27,7 @@ bool may_overlap(const std::vector<SpeciesSpec> &species, const std::vector<Plac
 /// up to more than 1.01, which those of touching bodies do not. `first`: the first pair at the same place, otherwise
 /// the first pair. Not compared are two anchored bodies (walls are joined so), bodies of one species with -NAME_contact
 /// merge, randomly placed bodies with earlier ones, and bodies from files (add_shared). If every rank knows the bodies
-/// near its cells (bring_near), all ranks together find every pair.
+/// near its cells (send_to_near_ranks), all ranks together find every pair.
 std::vector<int> find_overlaps(const std::vector<SpeciesSpec> &species, const std::vector<Places> &places,
                                const DomainShape &grid, Overlap *first);
 

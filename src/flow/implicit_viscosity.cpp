@@ -181,7 +181,7 @@ PetscErrorCode ImplicitViscosity::precondition(GhostExchange &exchange) {
     const std::ptrdiff_t next = residual_[a].stride(a);
     PetscCall(cycle.apply(residual_.part(a, 1), cycle_, scratch_));
     for_faces([&](int component, const Segment &row) {
-      if (component == a) take_cycle(a, row, end, 0, cycle.step(), correction_[a].row(row.j, row.k));
+      if (component == a) copy_cycle(a, row, end, 0, cycle.step(), correction_[a].row(row.j, row.k));
     });
     in_segment_parts(domain_->rows(), *domain_, [&](const Segment *begin, const Segment *last) {
       for (const Segment *row = begin; row < last; ++row) {
@@ -196,7 +196,7 @@ PetscErrorCode ImplicitViscosity::precondition(GhostExchange &exchange) {
       if (component != a) return;
       thread_local std::vector<double> other;
       other.resize(row.i_end);
-      take_cycle(a, row, domain_->touches_low(a) && domain_->is_open(a, false) ? 0 : -1, -next, cycle.step(),
+      copy_cycle(a, row, domain_->touches_low(a) && domain_->is_open(a, false) ? 0 : -1, -next, cycle.step(),
                  other.data());
       mean_row(row.i_begin, row.i_end, other.data(), correction_[a].row(row.j, row.k));
     });
@@ -206,7 +206,7 @@ PetscErrorCode ImplicitViscosity::precondition(GhostExchange &exchange) {
 
 // Copies a V-cycle's result to the faces of component a in a row, from cells `offset` values away. Faces with the index
 // `alone` along a have no cell: one relaxation replaces the V-cycle there.
-void ImplicitViscosity::take_cycle(int a, const Segment &row, int alone, std::ptrdiff_t offset, double relaxation,
+void ImplicitViscosity::copy_cycle(int a, const Segment &row, int alone, std::ptrdiff_t offset, double relaxation,
                                    double *to) const {
   const double *from = cycle_[0].row(row.j, row.k) + offset, *r = residual_[a].row(row.j, row.k);
   const bool whole_row = (a == 1 && row.j == alone) || (a == 2 && row.k == alone);

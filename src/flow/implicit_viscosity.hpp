@@ -46,7 +46,7 @@ private:
   PetscErrorCode sum_of_squares(const Field &field, double *result);
   void weight_open_faces(double factor, Field &field) const;
   PetscErrorCode precondition(GhostExchange &exchange);
-  void take_cycle(int a, const Segment &row, int alone, std::ptrdiff_t offset, double relaxation, double *to) const;
+  void copy_cycle(int a, const Segment &row, int alone, std::ptrdiff_t offset, double relaxation, double *to) const;
   PetscErrorCode multiply(GhostExchange &exchange, const ViscousStep &step, double part);
   PetscErrorCode add_boundaries(GhostExchange &exchange, const ViscousStep &step, double from, double to, double part,
                                 Field &right_side);

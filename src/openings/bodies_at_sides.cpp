@@ -43,7 +43,7 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
       if (stops)
         hold(p, d, high);
       else
-        found[leave_whole(flow_.now.phases[p].material) ? 1 : 2] = 1;
+        found[leaves_whole(flow_.now.phases[p].material) ? 1 : 2] = 1;
     }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 4, MPI_INT, MPI_MAX, flow_.domain.comm()));
   const int held = found[0];
@@ -52,15 +52,15 @@ PetscErrorCode BodiesAtSides::check_sides(bool start) {
                         std::to_string(free_layers) + " cells of the open boundary " +
                         side_name(held % 6 / 2, held % 2 != 0) +
                         "; accepted: bodies that stay further inside, or a longer box";
-  if (held < 0 && found[3] > 0) PetscCall(take_out_boxed(leaving));
-  if (held < 0 && found[1] > 0) PetscCall(take_out_bodies(true));
+  if (held < 0 && found[3] > 0) PetscCall(remove_boxed_bodies(leaving));
+  if (held < 0 && found[1] > 0) PetscCall(remove_bodies(true));
   if (held < 0 && found[2] > 0 && flow_.now.travel_since_labels == 0)
-    PetscCall(take_out_bodies(false));  // labels are new
+    PetscCall(remove_bodies(false));  // labels are new
   PetscFunctionReturn(0);
 }
 
 // Bodies of this rank in boxes, by their places in the list. They are last known where they are now.
-PetscErrorCode BodiesAtSides::take_out_boxed(const std::vector<std::size_t> &leaving) {
+PetscErrorCode BodiesAtSides::remove_boxed_bodies(const std::vector<std::size_t> &leaving) {
   std::vector<std::pair<int, Int3>> last;
   PetscFunctionBeginUser;
   const std::vector<BodyInBox> all = boxed_.bodies().list();
@@ -76,11 +76,11 @@ PetscErrorCode BodiesAtSides::take_out_boxed(const std::vector<std::size_t> &lea
 }
 
 // Removes the leaving bodies: those that are removed whole, or the others once all their solid lies beside a boundary.
-PetscErrorCode BodiesAtSides::take_out_bodies(bool whole) {
+PetscErrorCode BodiesAtSides::remove_bodies(bool whole) {
   std::map<int, Leaving> leaves;
   BodyOwners owners;
   std::vector<Int3> references;
-  const auto concerned = [&](const Phase &phase) { return !is_held(phase) && leave_whole(phase.material) == whole; };
+  const auto concerned = [&](const Phase &phase) { return !is_held(phase) && leaves_whole(phase.material) == whole; };
   // All ranks with cells of a body agree on the largest value of Leaving that any of them found.
   const auto agree = [&] {
     std::vector<double> here, owned(static_cast<std::size_t>(owners.owned().size()), 0);
@@ -111,7 +111,7 @@ PetscErrorCode BodiesAtSides::take_out_bodies(bool whole) {
   }
   for (Phase &phase : flow_.now.phases) {
     if (!concerned(phase)) continue;
-    take_out(flow_.domain, leaves, &phase);
+    remove_leaving(flow_.domain, leaves, &phase);
     PetscCall(flow_.rebuild_derived_fields(&phase));
   }
   if (!whole) PetscFunctionReturn(0);
@@ -193,7 +193,7 @@ PetscErrorCode BodiesAtSides::find_coming(const std::vector<int> &labels, std::v
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodiesAtSides::feed_boxed(const std::vector<int> &labels) {
+PetscErrorCode BodiesAtSides::copy_boxed_from_inlets(const std::vector<int> &labels) {
   std::vector<Coming> own, states;
   PetscFunctionBeginUser;
   PetscCall(find_coming(labels, &own));
@@ -207,7 +207,7 @@ PetscErrorCode BodiesAtSides::feed_boxed(const std::vector<int> &labels) {
     if (states[n] == Coming::comes_in) {
       shifts[labels[n]] = generators_->shift_of(labels[n]);
       PetscCall(flow_.bodies.add_like(flow_.domain, labels[n], shifts[labels[n]]));
-      generators_->come_in(labels[n], flow_.bodies.bodies());
+      generators_->let_in(labels[n], flow_.bodies.bodies());
       if (own[n] == Coming::comes_in) copies.emplace_back(labels[n], flow_.bodies.bodies());
     }
     generators_->forget(labels[n]);
@@ -225,7 +225,7 @@ PetscErrorCode BodiesAtSides::update_after_labels() {
   if (!generators_) PetscFunctionReturn(0);
   PetscCall(generators_->find_passed(&all));
   for (const int label : all) (flow_.now.phases[flow_.bodies.species(label)].boxed ? boxed : passed).push_back(label);
-  if (!boxed.empty()) PetscCall(feed_boxed(boxed));
+  if (!boxed.empty()) PetscCall(copy_boxed_from_inlets(boxed));
   if (passed.empty()) PetscFunctionReturn(0);
   PetscCall(copy_bodies(flow_.domain, flow_.exchange, passed, &flow_.now.phases, &copies));
   for (const BodyCopy &copy : copies) {
@@ -240,10 +240,10 @@ PetscErrorCode BodiesAtSides::update_after_labels() {
     PetscCall(find_fullest(flow_.domain, copy, shift, fractions[0], &fullest));
     if (fullest > full) continue;
     PetscCall(flow_.bodies.add_like(flow_.domain, copy.label, shift));
-    generators_->come_in(copy.label, flow_.bodies.bodies());
+    generators_->let_in(copy.label, flow_.bodies.bodies());
     generators_->forget(copy.label);
     Phase &phase = flow_.now.phases[copy.phase];
-    put_body(flow_.domain, copy, shift, flow_.bodies.bodies(), &phase);
+    insert_body(flow_.domain, copy, shift, flow_.bodies.bodies(), &phase);
     PetscCall(flow_.rebuild_derived_fields(&phase));
     for (FlowPart *part : flow_.parts) PetscCall(part->observe_new_body(phase, copy.phase, flow_.bodies.bodies()));
   }

@@ -23,11 +23,11 @@ private:
   /// State of a body that has passed the end of its inlet generator, on the rank that stores it; has_left on others.
   enum class Coming : int { has_left, waits, comes_in };
   PetscErrorCode check_sides(bool start);
-  PetscErrorCode take_out_bodies(bool whole);
-  PetscErrorCode take_out_boxed(const std::vector<std::size_t> &leaving);
+  PetscErrorCode remove_bodies(bool whole);
+  PetscErrorCode remove_boxed_bodies(const std::vector<std::size_t> &leaving);
   PetscErrorCode sum_fractions(Field *sum);
   PetscErrorCode find_coming(const std::vector<int> &labels, std::vector<Coming> *states);
-  PetscErrorCode feed_boxed(const std::vector<int> &labels);
+  PetscErrorCode copy_boxed_from_inlets(const std::vector<int> &labels);
 
   Flow &flow_;
   BoxedBodies &boxed_;

@@ -109,7 +109,7 @@ PetscErrorCode find_fullest(const Domain &domain, const BodyCopy &body, const In
   PetscFunctionReturn(0);
 }
 
-void put_body(const Box &box, const BodyCopy &body, const Int3 &shift, int label, Phase *phase) {
+void insert_body(const Box &box, const BodyCopy &body, const Int3 &shift, int label, Phase *phase) {
   const Int3 &begin = box.layout().begin;
   for_owned_cells(box, body, shift, [&](const BodyCopy::Cell &cell, const Int3 &at) {
     if (!(cell.phi > 0)) return;

@@ -33,6 +33,6 @@ PetscErrorCode find_fullest(const Domain &domain, const BodyCopy &body, const In
 
 /// Writes owned phi, labels and B of `body`, moved by `shift` cells, with the given label. Ghosts, B around the body
 /// and rows are left to the caller.
-void put_body(const Box &box, const BodyCopy &body, const Int3 &shift, int label, Phase *phase);
+void insert_body(const Box &box, const BodyCopy &body, const Int3 &shift, int label, Phase *phase);
 
 }  // namespace eulastic

@@ -35,7 +35,7 @@ public:
   /// Removes a body from its stretch.
   void forget(int label) { inside_.erase(label); }
   /// Adds the body `other` to the stretch of a body.
-  void come_in(int label, int other) { inside_[other] = inside_.at(label); }
+  void let_in(int label, int other) { inside_[other] = inside_.at(label); }
 
   /// The stretch of each body that is in one, by its label; the persistent state.
   const std::map<int, int> &inside() const { return inside_; }

@@ -12,7 +12,7 @@ bool has_solid(const Box &box, ConstView fraction, int d, bool high, int layers,
   return any;
 }
 
-bool leave_whole(const Material &material) { return material.has_surface() || material.viscosity > 0; }
+bool leaves_whole(const Material &material) { return material.has_surface() || material.viscosity > 0; }
 
 namespace {
 
@@ -35,7 +35,7 @@ bool leaves_box(const BodyInBox &body) {
   bool at_open_side = false;
   for (const auto [d, high] : box.sides())
     at_open_side = at_open_side || (box.is_open(d, high) && has_solid(box, phi, d, high, free_layers, 0));
-  if (!at_open_side || leave_whole(body.phase->material)) return at_open_side;
+  if (!at_open_side || leaves_whole(body.phase->material)) return at_open_side;
   bool leaves = true;
   for_points(away_from_open_sides(box, free_layers),
              [&](int i, int j, int k) { leaves = leaves && !(phi(i, j, k) > BodyCells::threshold); });
@@ -62,7 +62,7 @@ void mark_leaving(const Box &box, int d, bool high, int layers, bool whole, Phas
   });
 }
 
-void take_out(const Box &box, const std::map<int, Leaving> &leaves, Phase *phase) {
+void remove_leaving(const Box &box, const std::map<int, Leaving> &leaves, Phase *phase) {
   const View fraction = phase->fraction[0], label = phase->label[0];
   for_points(box.rows(), [&](int i, int j, int k) {
     double &name = label(i, j, k);

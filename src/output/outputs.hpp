@@ -70,7 +70,7 @@ public:
   /// Writes the row that waits if there is no next step.
   PetscErrorCode write_waiting();
   /// Returns the last row; null if it has been returned before.
-  const Measured *take_row();
+  const Measured *new_row();
   /// One line, once per run, if a red cell or any body is strongly strained in the last row, or nothing.
   std::string strain_warning();
   /// Measures the state if it has not been measured yet.

@@ -356,7 +356,7 @@ PetscErrorCode Outputs::write_row() {
   PetscFunctionReturn(0);
 }
 
-const Measured *Outputs::take_row() {
+const Measured *Outputs::new_row() {
   const bool fresh = is_new_;
   is_new_ = false;
   return fresh ? &written_ : nullptr;

@@ -86,7 +86,7 @@ PetscErrorCode check_state(Run *run) {
 // What a row of series.csv has shown.
 PetscErrorCode check_measured(Run *run) {
   PetscFunctionBeginUser;
-  const Measured *row = run->outputs.take_row();
+  const Measured *row = run->outputs.new_row();
   if (row == nullptr) PetscFunctionReturn(0);
   print_warning(run->solver.domain().comm(), run->outputs.strain_warning());
   PetscCall(run->guards.check(run->solver, *row, &run->stop));
@@ -277,7 +277,7 @@ PetscErrorCode begin_run(Domain *made, Run *run, std::string *refusal) {
   run->outputs.start(config, domain, &run->solver, run->position.outputs);
   if (!run->in_place) PetscCall(open_outputs(run));
   PetscCall(source.empty() ? run->outputs.write_due(false) : run->outputs.resume_row());
-  (void)run->outputs.take_row();
+  (void)run->outputs.new_row();
   PetscCall(run->outputs.measure());
   PetscCall(run->guards.check(run->solver, run->outputs.measured(), &run->stop));
   if (source.empty()) PetscCall(print_warnings(config, overlap, *run));

@@ -166,7 +166,7 @@ PetscErrorCode find_overlap(MPI_Comm comm, const Config &config, std::string *wa
   const Layout box = share || rank == 0 ? domain.split().box_of(rank, spec, 0).layout() : Layout{};
   std::vector<Places> near(config.species.size());
   for (std::size_t s = 0; s < near.size(); ++s)
-    PetscCall(bring_near(comm, domain, config.species[s], config.places[s], &near[s]));
+    PetscCall(send_to_near_ranks(comm, domain, config.species[s], config.places[s], &near[s]));
   Overlap first;
   std::vector<int> overlaps;
   if (may_overlap(config.species, config.places)) overlaps = find_overlaps(config.species, near, config.grid, &first);

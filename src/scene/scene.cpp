@@ -61,7 +61,7 @@ PetscErrorCode fill_state(const Config &config, const Domain &domain, Solver *so
   for (std::size_t s = 0; s < config.species.size(); ++s) {
     const SpeciesSpec &species = config.species[s];
     Places placed = config.places[s], near;
-    PetscCall(bring_near(domain.comm(), domain, species, placed, &near));
+    PetscCall(send_to_near_ranks(domain.comm(), domain, species, placed, &near));
     Phase phase;
     if (config.lies_in_boxes(s) && !file.holds(species)) {
       PetscCall(box_places(domain, species, near, {static_cast<int>(s), next_label}, solver, &phase));

@@ -92,7 +92,7 @@ TEST(Seeding, ARankBuildsOnlyWhatReachesItsCells) {
   const Places all = test::with_all_places(result.config).places[0], &mine = result.config.places[0];
   EXPECT_EQ(int(mine.known.size()), BodyRange::of(27000, test::world_rank(), domain.ranks()).size());
   Places near;
-  ASSERT_EQ(bring_near(domain.comm(), domain, result.config.species[0], mine, &near), 0);
+  ASSERT_EQ(send_to_near_ranks(domain.comm(), domain, result.config.species[0], mine, &near), 0);
   double most = 1;
   for (int d = 0; d < 3; ++d) most *= std::min(1.0, (domain.cells()[d] + 2 * (0.4 + 1) + 2) / 80.0);
   EXPECT_LE(double(near.known.size()), most * 27000);
