@@ -1,7 +1,7 @@
 // Correction of B at the surface of moving bodies: docs/method.md, section 7.
 //
 // In a cell that the surface cuts, the velocity gradient is that of the mixture. Its difference from that of the solid
-// follows from the continuity of traction, (22); the remaining error is relaxed at the strain rate, (23).
+// follows from the continuity of traction, (22); the remaining error is relaxed towards B of the interior, (23).
 #pragma once
 
 #include "base/petsc.hpp"
