@@ -19,6 +19,9 @@ namespace eulastic {
 /// contained in `slopes`.
 double half_space_fraction(double level, const Real3 &slopes) noexcept;
 
+/// Depth in cells up to which a face of the grid counts as on a surface, and not as inside, in spite of round-off.
+inline constexpr double on_surface = 1e-9;
+
 class PlacedBody {
 public:
   PlacedBody(const Surface &surface, const DomainShape &grid, const BodyPlace &place);

@@ -13,15 +13,11 @@ namespace eulastic {
 namespace {
 
 constexpr double inward = 1e-6;      // shift of faces on a boundary into the box, in cells
-constexpr double on_surface = 1e-9;  // depth in cells up to which a face counts as on the surface
 constexpr double shortest = 1e-3;    // least length of a link, in spacings
 constexpr double least_open = 0.03;  // least factor of the pressure increment at a cut face
 
 // The depth below which a face is inside, so that faces on a surface are fluid in spite of round-off.
-double depth_inside(const Domain &domain) {
-  const Real3 &h = domain.spacing();
-  return on_surface * (domain.dimension() == 3 ? std::min({h[0], h[1], h[2]}) : std::min(h[0], h[1]));
-}
+double depth_inside(const Domain &domain) { return on_surface * domain.domain_shape().shortest_spacing(); }
 
 }  // namespace
 

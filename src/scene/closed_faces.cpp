@@ -7,8 +7,6 @@
 namespace eulastic {
 namespace {
 
-constexpr double on_surface = 1e-9;  // depth in cells up to which a face counts as on the surface
-
 bool contains_face(const PlacedBody &body, const DomainShape &grid) {
   constexpr unsigned faces = centre_inside - 1;
   Int3 middle{}, end = grid.cells;

@@ -172,7 +172,6 @@ bool is_closed(const Config &config, const SideCells &cells, int d, int high) {
 // A rigid slab stops fluid where faces of the grid across its axis are inside it: it needs one, also while it moves. On
 // a boundary that is not periodic the slab may be thinner, as the boundary is closed without it.
 bool is_too_thin(const Config &config, const SpeciesSpec &slab) {
-  constexpr double on_surface = 1e-9;  // in cells: a face so close to the surface is outside
   const double spacing = config.grid.spacing(slab.axis);
   const double low = slab.interval[0] / spacing, high = slab.interval[1] / spacing;
   const bool bounded = config.grid.boundary[slab.axis] == Boundary::wall;

@@ -105,7 +105,7 @@ class Performance(WithFolder):
                 row("classic", "smac", "32", ".2", "8"), row("fast", "acm", "32", ".02", "6")]
         text = tables.work_precision(rows)
         self.assertIn("| a b | 16 | 0.1 (1) | - | - | - |\n| a b | 32 | 0.02 (3) | - | - | 0.2 (4) |", text)
-        rows = [row("all of it", "acm", "64", ".1", "2"), row("one sweep", "acm", "64", "12.04", "1")]
+        rows = [row("complete method", "acm", "64", ".1", "2"), row("one iteration", "acm", "64", "12.04", "1")]
         self.assertIn("| complete method | 1 (1) |\n| one iteration | 120 (0.5) |", tables.ablation(rows))
 
     def test_thickness_of_a_dimple(self):
