@@ -1,9 +1,8 @@
 """The pictures of scripts/studies/paper/paper_section5, from {case: run}."""
-import matplotlib
 import numpy
 from eulastic.figure_style import BLUE, COLOURS, INK, MARKS, ORANGE, SKY, VERMILLION, WIDTH, legend_below, legend_beside, panels, plt, save
 from eulastic.labels import Units
-from eulastic.scene import BLUES, Look, Scene, plane_range
+from eulastic.scene import Look, Scene, plane_range
 
 from . import measures
 
@@ -17,8 +16,8 @@ def snapshots(runs, work, path):
     """Draws Fig. 7: the beginning and the end of every run."""
     pairs = {case: (run.snapshots[0], run.snapshots[-1]) for case, run in runs.items()}
     speed = plane_range([snapshot for pair in pairs.values() for snapshot in pair])
-    figure, axes = plt.subplots(len(runs), 2, figsize=(WIDTH, 1.83 * len(runs) + 0.3), squeeze=False, layout="none",
-                                gridspec_kw=dict(left=0.06, right=0.86, top=1 - 0.3 / (1.83 * len(runs) + 0.3), bottom=0.005,
+    figure, axes = plt.subplots(len(runs), 2, figsize=(WIDTH, 2.12 * len(runs) + 0.3), squeeze=False, layout="none",
+                                gridspec_kw=dict(left=0.06, right=0.99, top=1 - 0.3 / (2.12 * len(runs) + 0.3), bottom=0.005,
                                                  wspace=0.02, hspace=0.03))
     for row, (case, pair) in zip(axes, pairs.items()):
         scene = Scene(runs[case], (960, 500), Units(""), speed, 0, Look(camera=(6, 12), words=False))
@@ -31,9 +30,6 @@ def snapshots(runs, work, path):
             if axis in axes[0]:
                 axis.set_title(f"t = {snapshot.time / 1000:.2g} ms")
         row[0].set_ylabel(f"{percent(runs[case]):.0f} %")
-    blues = matplotlib.colors.LinearSegmentedColormap.from_list("u", BLUES)
-    colours = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(*speed), blues)
-    figure.colorbar(colours, cax=figure.add_axes([0.88, 0.25, 0.018, 0.5]), label="u in the middle plane (µm/µs)")
     save(figure, path)
 
 

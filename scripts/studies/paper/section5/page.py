@@ -21,7 +21,7 @@ Written by `scripts/studies/paper/paper_section5`; do not edit. This page repeat
 for readers who want to see what the program computes for blood. Red cells and platelets flow through an elastic vessel at hematocrits of 0, 5, 10,
 15 and 20 %. The vessel is small enough for two cores, while the paper used the K computer:
 
-    scripts/studies/paper/paper_section5                # all runs: about an hour; the same command continues after an interruption
+    scripts/studies/paper/paper_section5                # all runs: about half an hour; the same command continues after an interruption
     scripts/studies/paper/paper_section5 --finished     # no runs: writes the page from the finished ones
     scripts/studies/paper/paper_section5 --only h20     # one of {cases}
 
@@ -36,8 +36,7 @@ and a run time of about {time} on one core.
 
 ![Snapshots at five hematocrits](images/section5_snapshots.png)
 
-*Cells at the beginning and at the end. The pictures show the far half of the lumen, and behind it the velocity along x in the middle plane. Cells that
-cross a periodic boundary are cut there and drawn at both ends. With 13 grid cells per diameter some red cells appear as rings ([dimple.md](dimple.md)).*
+*Cells at the beginning and at the end. The pictures show the far half of the vessel. Cells that cross a periodic boundary are cut there and drawn at both ends. With 13 grid cells per diameter some red cells appear as rings ([dimple.md](dimple.md)).*
 
 ## Figure 8: positions of the platelets
 
